@@ -1,0 +1,77 @@
+# The front door. On a fresh Debian 12: `make demo` shows what the program does, `make test` proves it.
+#
+#   make demo [IN=file]  install what is missing, build, measure a shape made on the spot (and IN)
+#   make test            everything that is tested: C++, command line, install, layout; Release and sanitizers
+#   make lint            formatting and static analysis
+#   make bench           measurements against peers (not tests)
+#   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
+#   make clean           remove what was built
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+PYTHON ?= /usr/bin/python3
+FUZZ_SECONDS ?= 60
+PROGRAM := build/release/gaussmap
+SOURCES = $(shell git ls-files '*.cpp' '*.h')
+
+# Debian packages that are listed but not installed; sudo where we are not root.
+missing = $$(grep -v '^\#' packages.txt | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
+sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
+
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench fuzz clean setup release
+
+setup:
+	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
+	  $(sudo) apt-get update -qq; \
+	  $(sudo) env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing >/dev/null; fi
+
+release: setup
+	@cmake --preset release >/dev/null
+	@cmake --build --preset release
+
+demo: release
+	@mkdir -p out
+	$(PROGRAM) shape knot --grid 600x60 --jitter 0.2 -o out/knot.ply
+	$(PROGRAM) curvature out/knot.ply --truth exact_density --color -o out/knot-curvature.ply
+	@if [ -n "$(IN)" ]; then set -x; $(PROGRAM) curvature "$(IN)" --color -o "out/$$(basename "$(IN)" | sed 's/\.[^.]*$$//')-curvature.ply"; fi
+	@echo; echo "Written, to open in MeshLab or CloudCompare:"; ls -1 out/*-curvature.ply | sed 's/^/  /'
+
+test: test-release test-cli test-asan test-tsan
+	@echo; echo "All suites passed."
+
+test-release: release
+	ctest --preset release --no-tests=error -j 2
+
+test-cli: release
+	GAUSSMAP=$(PROGRAM) $(PYTHON) -m pytest -q -p no:cacheprovider tests/cli
+
+test-asan: setup
+	@cmake --preset asan >/dev/null
+	@cmake --build --preset asan
+	ctest --preset asan --no-tests=error -j 2
+	GAUSSMAP=build/asan/gaussmap $(PYTHON) -m pytest -q -p no:cacheprovider tests/cli
+
+# Data races: the tests that run with several threads.
+test-tsan: setup
+	@cmake --preset tsan >/dev/null
+	@cmake --build --preset tsan
+	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
+
+lint: setup
+	clang-format-14 --dry-run --Werror $(SOURCES)
+	@cmake --preset release >/dev/null
+	run-clang-tidy-14 -quiet -p build/release '/(src|cli)/' 2>/dev/null
+
+bench: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench
+	build/bench/bench/mesh_curvature
+
+fuzz: setup
+	@cmake --preset fuzz >/dev/null
+	@cmake --build --preset fuzz
+	@mkdir -p build/fuzz/corpus
+	build/fuzz/tests/fuzz/fuzz_read -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=2048 -timeout=10 build/fuzz/corpus
+
+clean:
+	rm -rf build out

@@ -1,0 +1,39 @@
+// Checks of what comes with clouds at the library's border; messages name the array, the index and the value.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "gaussmap/neighbors.h"
+
+namespace gaussmap {
+
+/// \throw std::invalid_argument on more points than 32-bit indices can name.
+inline void check_countable(Points points) {
+    constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
+    if (points.count > most)
+        throw std::invalid_argument("points has " + std::to_string(points.count) + " entries, more than " +
+                                    std::to_string(most) + "; split the cloud");
+}
+
+/// \throw std::invalid_argument unless the rows are of these points and every index is −1 or one of them.
+inline void check_neighbors(const Neighbors& neighbors, std::size_t points) {
+    if (neighbors.count() != points)
+        throw std::invalid_argument("neighbors has " + std::to_string(neighbors.count()) + " rows, but there are " +
+                                    std::to_string(points) + " points");
+    for (std::size_t i = 0; i < neighbors.index.size(); ++i)
+        if (neighbors.index[i] < -1 || neighbors.index[i] >= static_cast<std::int64_t>(points))
+            throw std::invalid_argument("neighbors[" + std::to_string(i / neighbors.k) + "][" +
+                                        std::to_string(i % neighbors.k) + "] = " + std::to_string(neighbors.index[i]) +
+                                        " is outside [-1, " + std::to_string(points) + ")");
+}
+
+/// \throw std::invalid_argument on a degree of jets that there is not.
+inline void check_degree(int degree) {
+    if (degree < 1 || degree > 4)
+        throw std::invalid_argument("degree = " + std::to_string(degree) + " is outside 1 to 4");
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,159 @@
+// Which reader a file goes to: by what it begins with, then by its extension.
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "io/file.h"
+#include "io/formats.h"
+#include "io/rows.h"
+#include "io/types.h"
+
+namespace gaussmap {
+
+namespace io {
+
+void fail(const Source& source, const std::string& where, const std::string& what, const std::string& todo) {
+    std::string message = source.name + ": ";
+    if (!where.empty()) message += where + ": ";
+    message += what;
+    if (!todo.empty()) message += "; " + todo;
+    throw FormatError(message);
+}
+
+namespace {
+
+/// What begins the files of programs near to ours, and how to come by their contents.
+struct Foreign {
+    std::string_view magic;
+    const char* what;
+    const char* todo;
+};
+constexpr const char* convert_it = "convert it to one of ";
+constexpr std::array<Foreign, 12> foreign = {
+    {{"LASF", "a LAS or LAZ file", "read it with the Python package gaussmap, or convert it to one of "},
+     {"ASTM-E57", "an E57 file", convert_it},
+     {"DRACO", "a Draco file", convert_it},
+     {std::string_view("II*\0", 4), "a TIFF picture", convert_it},
+     {std::string_view("MM\0*", 4), "a TIFF picture", convert_it},
+     {"\x89PNG", "a PNG picture", convert_it},
+     {"glTF", "a glTF file", convert_it},
+     {"Kaydara FBX Binary", "an FBX file", convert_it},
+     {"PK\x03\x04", "a zip archive", "unpack it, or convert it to one of "},
+     {"\x1F\x8B", "a file compressed by gzip", "unpack it, or convert it to one of "},
+     {"# vtk DataFile", "a VTK file", convert_it},
+     {"<?xml", "an XML file", convert_it}}};
+
+/// OFF with its prefixes: [ST][C][N][4][n]OFF.
+bool is_off_word(std::string_view word) {
+    for (const std::string_view prefix : {"ST", "C", "N", "4", "n"}) {
+        if (word.starts_with(prefix)) word.remove_prefix(prefix.size());
+    }
+    return word == "OFF";
+}
+
+bool is_obj_word(std::string_view word) {
+    constexpr std::array<std::string_view, 12> words = {"v", "vt", "vn", "vp",     "f",      "l",
+                                                        "p", "g",  "o",  "mtllib", "usemtl", "s"};
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// 80 bytes of anything, a count, and 50 bytes a facet.
+bool is_binary_stl(std::string_view bytes) {
+    if (bytes.size() <= 84) return false;
+    auto count = value_at<std::uint32_t>(bytes.data() + 80);
+    if constexpr (std::endian::native == std::endian::big) count = swapped(count);
+    return bytes.size() == 84 + 50 * std::size_t{count};
+}
+
+/// The first line that is neither blank nor a comment.
+std::string_view first_line(std::string_view text) {
+    Lines lines(text);
+    std::string_view line;
+    while (lines.next(line)) {
+        std::string_view rest = line;
+        const std::string_view word = next_word(rest);
+        if (!word.empty() && word[0] != '#' && !word.starts_with("//")) return line;
+    }
+    return {};
+}
+
+/// The format that the content alone makes certain.
+Format format_by_content(std::string_view bytes) {
+    if (is_binary_stl(bytes)) return Format::stl;
+    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+    if (bytes.starts_with("ply") && bytes.size() > 3 && is_blank(bytes[3])) return Format::ply;
+    if (bytes.starts_with("# .PCD")) return Format::pcd;
+    std::string_view line = first_line(bytes);
+    const std::string_view word = next_word(line);
+    if (word == "VERSION" || word == "FIELDS") return Format::pcd;
+    if (is_off_word(word)) return Format::off;
+    if (word == "solid" && (bytes.find("facet") != bytes.npos || bytes.find("endsolid") != bytes.npos))
+        return Format::stl;
+    if (is_obj_word(word)) return Format::obj;
+    return Format::detect;
+}
+
+/// Rows of numbers are points, unless the extension knows better.
+bool begins_with_numbers(std::string_view bytes) {
+    std::string_view line = first_line(bytes);
+    double value = 0;
+    std::string_view word = next_word(line);
+    word = word.substr(0, word.find_first_of(",;"));
+    return !word.empty() && parse(word, value);
+}
+
+Format detect(const Source& source) {
+    const Format certain = format_by_content(source.bytes);
+    if (certain != Format::detect) return certain;
+    for (const auto& [magic, what, todo] : foreign) {
+        if (source.bytes.starts_with(magic))
+            fail(source, "", std::string(what) + ", which is not read", todo + known_extensions());
+    }
+    const Format by_name = format_of(source.name);
+    if (by_name != Format::detect) return by_name;
+    if (begins_with_numbers(source.bytes)) return Format::xyz;
+    fail(source, "", "the format is not known", convert_it + known_extensions());
+}
+
+/// No text at all behind the name of a text format. (UTF-16 with its mark is told by text_of.)
+void check_text(const Source& source) {
+    const std::string_view head = source.bytes.substr(0, 4096);
+    if (head.starts_with("\xFE\xFF") || head.starts_with("\xFF\xFE")) return;
+    const std::size_t at = head.find('\0');
+    if (at == head.npos) return;
+    fail(source, "byte " + std::to_string(at + 1), "a zero byte, so this is no text",
+         "give a text file in UTF-8, or the format that it is of");
+}
+
+}  // namespace
+
+}  // namespace io
+
+Geometry read_bytes(std::string_view bytes, const std::string& name, Format format, const Execution& run) {
+    const io::Source source{bytes, name, run};
+    if (bytes.empty()) io::fail(source, "", "the file is empty (0 bytes)", "write it anew");
+    if (format == Format::detect) format = io::detect(source);
+    switch (format) {
+        case Format::ply:
+            return io::read_ply(source);
+        case Format::obj:
+            io::check_text(source);
+            return io::read_obj(source);
+        case Format::off:
+            return io::read_off(source);
+        case Format::stl:
+            return io::read_stl(source);
+        case Format::pcd:
+            return io::read_pcd(source);
+        default:
+            io::check_text(source);
+            return io::read_xyz(source);
+    }
+}
+
+Geometry read(const std::string& path, Format format, const Execution& run) {
+    const io::FileBytes file(path);
+    return read_bytes(file.bytes(), path, format, run);
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,57 @@
+// Sums over the faces of each vertex of values that a function makes for the three corners of a face.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "first_touch.h"
+#include "parallel.h"
+
+namespace gaussmap {
+
+/// N sums a vertex. `values(face, corners)` fills double corners[3][N] and returns whether the face adds anything.
+/// Contributions are added in ascending order of the faces for any number of threads (first_touch.h).
+/// \throw std::invalid_argument at an index outside [0, vertices).
+template <int N, class Values>
+std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const Execution& run, Values&& values) {
+    struct Late {
+        std::int32_t vertex;
+        double value[N];
+    };
+    constexpr std::size_t progress_stretch = 1 << 18;
+    const FaceChunks chunks = chunk_faces(faces, vertices, run);
+    std::vector<double> sums(N * vertices, 0.0);
+    std::vector<std::vector<Late>> late(chunks.count());
+    const bool alone = chunks.count() == 1;
+
+    const auto work = [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        double corners[3][N];
+        for (std::size_t f = begin; f < end; ++f) {
+            if (!values(f, corners)) continue;
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::int32_t vertex = faces[f][corner];
+                if (alone || chunks.owner[vertex] == chunk) {
+                    double* sum = &sums[N * static_cast<std::size_t>(vertex)];
+                    for (int i = 0; i < N; ++i) sum[i] += corners[corner][i];
+                } else {
+                    Late& l = late[chunk].emplace_back();
+                    l.vertex = vertex;
+                    for (int i = 0; i < N; ++i) l.value[i] = corners[corner][i];
+                }
+            }
+        }
+    };
+    if (alone) {
+        for_blocks(faces.count, progress_stretch, {1, run.progress},
+                   [&](std::size_t, std::size_t begin, std::size_t end) { work(0, begin, end); });
+    } else {
+        for_blocks(chunks.count(), 1, run,
+                   [&](std::size_t c, std::size_t, std::size_t) { work(c, chunks.begin[c], chunks.begin[c + 1]); });
+    }
+    for (const auto& list : late)
+        for (const Late& l : list)
+            for (int i = 0; i < N; ++i) sums[N * static_cast<std::size_t>(l.vertex) + i] += l.value[i];
+    return sums;
+}
+
+}  // namespace gaussmap

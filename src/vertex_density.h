@@ -1,0 +1,42 @@
+// The fused pass over the triangles of a mesh: kappa and area added up at the vertices, and a triangle if wanted.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/types.h"
+
+namespace gaussmap {
+
+/// A contribution to a vertex that is added later (first_touch.h).
+struct SetAside {
+    std::int32_t vertex;
+    double kappa, area;
+};
+
+/// What one call of a kernel works on.
+struct FusedPass {
+    const double* xyz;
+    const double* normals;      // unit, NaN where undefined
+    const std::int32_t* abc;    // checked
+    double* sums;               // 2 a vertex: Σ S/2A and Σ 2A
+    double* face_kappa;         // a face, or null
+    double* face_area;          // a face, or null with face_kappa
+    const std::uint8_t* owner;  // null: this chunk owns every vertex
+    std::uint8_t chunk;
+    mutable SetAside* aside;  // room for 3 a face; moved on
+};
+
+/// Faces [begin, end) in ascending order.
+using FusedKernel = void (*)(FusedPass&, std::size_t begin, std::size_t end);
+void fused_kernel_baseline(FusedPass&, std::size_t begin, std::size_t end);
+void fused_kernel_avx2(FusedPass&, std::size_t begin, std::size_t end);
+void fused_kernel_avx512(FusedPass&, std::size_t begin, std::size_t end);
+
+/// Sums for all vertices (2 each, room given), and kappa and area of every face unless null.
+/// \throw std::invalid_argument at an index outside the vertices.
+void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
+                double* face_area, const Execution& run);
+
+}  // namespace gaussmap

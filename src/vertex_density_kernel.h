@@ -1,0 +1,195 @@
+// The fused pass over triangles, W at a time, for one instruction set. Included by vertex_density_<set>.cpp alone, each
+// compiled for its set; nothing here may have external linkage but the entry that each defines, or the linker could pick
+// a copy that the machine cannot run. Every set rounds every operation alike, so all give the same bits.
+//
+// Per triangle abc with unit normals n (docs/method.md, eq. (3)):
+//   2A = |(b − a) × (c − a)|,   S = Σ_i d_i |n_j − n_k|²,   d_i the dot product of the two edges leaving corner i,
+//   kappa = S / (2 · 2A),   area = 2A / 2.
+// The sums hold S / 2A and 2A, twice each, which leaves their quotient, the density, as it is.
+#pragma once
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+#include "degenerate.h"
+#include "vertex_density.h"
+
+namespace gaussmap {
+namespace {
+
+// W doubles, and W/2 pairs of doubles as they lie in memory.
+template <int W>
+struct Lanes {
+    typedef double Real __attribute__((vector_size(8 * W)));
+    typedef long long Mask __attribute__((vector_size(8 * W)));
+};
+typedef double Pair __attribute__((vector_size(16)));
+typedef double PairInMemory __attribute__((vector_size(16), aligned(8), may_alias));
+
+inline Pair load_pair(const double* p) { return *reinterpret_cast<const PairInMemory*>(p); }
+
+#define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+// Pairs p[0], p[stride], … side by side.
+template <int W>
+GAUSSMAP_INLINE typename Lanes<W>::Real join(const double* const* p, int offset) {
+    if constexpr (W == 2) {
+        return load_pair(p[0] + offset);
+    } else if constexpr (W == 4) {
+        return __builtin_shufflevector(load_pair(p[0] + offset), load_pair(p[2] + offset), 0, 1, 2, 3);
+    } else {
+        const auto low = __builtin_shufflevector(load_pair(p[0] + offset), load_pair(p[2] + offset), 0, 1, 2, 3);
+        const auto high = __builtin_shufflevector(load_pair(p[4] + offset), load_pair(p[6] + offset), 0, 1, 2, 3);
+        return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+}
+
+// Even (odd) entries of a and b in turn: a0 b0 a2 b2 … (a1 b1 a3 b3 …).
+template <int W, class Real>
+GAUSSMAP_INLINE Real evens(Real a, Real b) {
+    if constexpr (W == 2) return __builtin_shufflevector(a, b, 0, 2);
+    else if constexpr (W == 4) return __builtin_shufflevector(a, b, 0, 4, 2, 6);
+    else return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+}
+template <int W, class Real>
+GAUSSMAP_INLINE Real odds(Real a, Real b) {
+    if constexpr (W == 2) return __builtin_shufflevector(a, b, 1, 3);
+    else if constexpr (W == 4) return __builtin_shufflevector(a, b, 1, 5, 3, 7);
+    else return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+}
+
+template <int W>
+struct Vectors {
+    typename Lanes<W>::Real x, y, z;
+};
+
+// The three coordinates of W vertices, transposed in registers. Reads 24 bytes a vertex, nothing beyond.
+template <int W>
+GAUSSMAP_INLINE Vectors<W> gather(const double* xyz, const std::int32_t* index) {
+    const double* p[W];
+    for (int l = 0; l < W; ++l) p[l] = xyz + 3 * static_cast<std::size_t>(index[3 * l]);
+    const auto xy_even = join<W>(p, 0), xy_odd = join<W>(p + 1, 0);
+    const auto yz_even = join<W>(p, 1), yz_odd = join<W>(p + 1, 1);
+    return {evens<W>(xy_even, xy_odd), odds<W>(xy_even, xy_odd), odds<W>(yz_even, yz_odd)};
+}
+
+template <int W>
+GAUSSMAP_INLINE Vectors<W> minus(const Vectors<W>& a, const Vectors<W>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <int W>
+GAUSSMAP_INLINE typename Lanes<W>::Real dot(const Vectors<W>& a, const Vectors<W>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+// Compilers do not make one instruction of a loop of square roots over lanes.
+template <int W, class Real>
+GAUSSMAP_INLINE Real square_root(Real a) {
+#ifdef __AVX512F__
+    if constexpr (W == 8) return (Real)_mm512_maskz_sqrt_pd(0xff, (__m512d)a);
+#endif
+#ifdef __AVX2__
+    if constexpr (W == 4) return (Real)_mm256_sqrt_pd((__m256d)a);
+#endif
+#ifdef __SSE2__
+    if constexpr (W == 2) return (Real)_mm_sqrt_pd((__m128d)a);
+#endif
+    Real root;
+    for (int l = 0; l < W; ++l) root[l] = __builtin_sqrt(a[l]);
+    return root;
+}
+
+template <int W>
+struct Energies {
+    typename Lanes<W>::Real kappa, area;          // S / 2A and 2A, both 0 where the triangle adds nothing
+    typename Lanes<W>::Mask usable, degenerate;   // all ones where so
+};
+
+template <int W>
+GAUSSMAP_INLINE Energies<W> energies(const double* xyz, const double* normals, const std::int32_t* abc) {
+    using Real = typename Lanes<W>::Real;
+    const auto a = gather<W>(xyz, abc), b = gather<W>(xyz, abc + 1), c = gather<W>(xyz, abc + 2);
+    asm volatile("" ::: "memory");  // load the indices again rather than spill 3 W of them
+    const auto na = gather<W>(normals, abc), nb = gather<W>(normals, abc + 1), nc = gather<W>(normals, abc + 2);
+    const auto ab = minus<W>(b, a), ac = minus<W>(c, a), bc = minus<W>(c, b);
+    const Real da = dot<W>(ab, ac), db = -dot<W>(ab, bc), dc = dot<W>(ac, bc);
+    const auto nab = minus<W>(nb, na), nac = minus<W>(nc, na), nbc = minus<W>(nc, nb);
+    const Real s = da * dot<W>(nbc, nbc) + db * dot<W>(nac, nac) + dc * dot<W>(nab, nab);
+    const Vectors<W> cross = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
+    const Real cross_squared = dot<W>(cross, cross);
+    // |ab|² = da + db and so on: the longest edge leaves out the smallest of the three.
+    const Real least = da < db ? (da < dc ? da : dc) : (db < dc ? db : dc);
+    const Real longest_squared = da + db + dc - least;
+    const Real threshold = no_area_ratio * (longest_squared * longest_squared);
+    const Real huge = Real{} + __DBL_MAX__, zero = Real{};
+
+    Energies<W> e;
+    e.degenerate = (cross_squared <= threshold) & (threshold <= huge);
+    e.usable = (cross_squared > threshold) & (cross_squared <= huge) & (s <= huge) & (s >= -huge);
+    const Real area = square_root<W>(cross_squared);
+    // The energy is never negative; rounding could make it so by its last bit.
+    const Real kappa = (s > zero ? s : zero) / area;
+    e.kappa = e.usable ? kappa : zero;
+    e.area = e.usable ? area : zero;
+    return e;
+}
+
+// Add the pairs of `valid` triangles to their corners; corners that an earlier chunk owns are set aside.
+template <bool Alone>
+GAUSSMAP_INLINE void add_corners(const FusedPass& pass, const std::int32_t* abc, const double* pairs, int order, int valid) {
+    for (int l = 0; l < valid; ++l) {
+        const Pair pair = *reinterpret_cast<const Pair*>(pairs + (l & 1) * order + (l & ~1));
+        for (int corner = 0; corner < 3; ++corner) {
+            const std::int32_t vertex = abc[3 * l + corner];
+            if (Alone || pass.owner[vertex] == pass.chunk) {
+                *reinterpret_cast<PairInMemory*>(pass.sums + 2 * static_cast<std::size_t>(vertex)) += pair;
+            } else {
+                *pass.aside++ = {vertex, pair[0], pair[1]};
+            }
+        }
+    }
+}
+
+template <int W>
+GAUSSMAP_INLINE void write_faces(const FusedPass& pass, std::size_t face, const Energies<W>& e, int valid) {
+    using Real = typename Lanes<W>::Real;
+    const Real undefined = Real{} + __builtin_nan("");
+    const Real kappa = e.usable ? 0.5 * e.kappa : (e.degenerate ? Real{} : undefined);
+    const Real area = e.usable ? 0.5 * e.area : (e.degenerate ? Real{} : undefined);
+    for (int l = 0; l < valid; ++l) pass.face_kappa[face + l] = kappa[l], pass.face_area[face + l] = area[l];
+}
+
+template <int W, bool Alone>
+GAUSSMAP_INLINE void batch(const FusedPass& pass, std::size_t face, const std::int32_t* abc, int valid) {
+    const Energies<W> e = energies<W>(pass.xyz, pass.normals, abc);
+    alignas(64) double pairs[2 * W];
+    *reinterpret_cast<typename Lanes<W>::Real*>(pairs) = evens<W>(e.kappa, e.area);
+    *reinterpret_cast<typename Lanes<W>::Real*>(pairs + W) = odds<W>(e.kappa, e.area);
+    add_corners<Alone>(pass, abc, pairs, W, valid);
+    if (pass.face_kappa) write_faces<W>(pass, face, e, valid);
+}
+
+template <int W, bool Alone>
+inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
+    std::size_t face = begin;
+    for (; face + W <= end; face += W) batch<W, Alone>(pass, face, pass.abc + 3 * face, W);
+    if (face == end) return;
+    // The last few, made up to W with copies of the last one, which are not added.
+    std::int32_t abc[3 * W];
+    for (int l = 0; l < W; ++l)
+        for (int corner = 0; corner < 3; ++corner)
+            abc[3 * l + corner] = pass.abc[3 * (face + l < end ? face + l : end - 1) + corner];
+    batch<W, Alone>(pass, face, abc, static_cast<int>(end - face));
+}
+
+template <int W>
+inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
+    if (pass.owner) run<W, false>(pass, begin, end);
+    else run<W, true>(pass, begin, end);
+}
+
+#undef GAUSSMAP_INLINE
+
+}  // namespace
+}  // namespace gaussmap

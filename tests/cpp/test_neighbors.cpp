@@ -1,0 +1,183 @@
+// Nearest neighbours against brute force, and clouds without repetitions.
+#include "gaussmap/neighbors.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "clouds.h"
+
+using namespace gaussmap;
+using support::Random;
+using support::refusal;
+
+namespace {
+
+/// The definition: all others sorted by (squared distance, index).
+std::vector<std::int32_t> brute_force(const std::vector<double>& points, int k) {
+    const std::size_t n = points.size() / 3;
+    std::vector<std::int32_t> index(n * static_cast<std::size_t>(k), -1);
+    std::vector<std::pair<double, std::int32_t>> others;
+    for (std::size_t i = 0; i < n; ++i) {
+        others.clear();
+        for (std::size_t j = 0; j < n; ++j) {
+            if (i == j) continue;
+            const double dx = points[3 * j] - points[3 * i], dy = points[3 * j + 1] - points[3 * i + 1],
+                         dz = points[3 * j + 2] - points[3 * i + 2];
+            others.emplace_back(dx * dx + dy * dy + dz * dz, static_cast<std::int32_t>(j));
+        }
+        const std::size_t wanted = std::min(others.size(), static_cast<std::size_t>(k));
+        std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(wanted), others.end());
+        for (std::size_t j = 0; j < wanted; ++j) index[i * static_cast<std::size_t>(k) + j] = others[j].second;
+    }
+    return index;
+}
+
+std::vector<double> random_points(std::size_t n, std::uint64_t seed, double size = 1) {
+    Random random(seed);
+    std::vector<double> points(3 * n);
+    for (double& v : points) v = size * random.uniform();
+    return points;
+}
+
+void expect_exact(const std::vector<double>& points, int k, const char* what) {
+    const Neighbors found = nearest_neighbors(points, k);
+    EXPECT_EQ(found.k, static_cast<std::size_t>(k)) << what;
+    EXPECT_EQ(found.count(), points.size() / 3) << what;
+    EXPECT_EQ(found.index, brute_force(points, k)) << what << ", k = " << k;
+}
+
+}  // namespace
+
+TEST(NearestNeighbors, RandomPointsAsBruteForce) {
+    for (const int k : {1, 2, 7, 20, 50}) expect_exact(random_points(1000, 1), k, "cube");
+    for (const std::size_t n : {2, 3, 15, 16, 17, 31, 32, 33, 100, 257}) expect_exact(random_points(n, n), 8, "small");
+    expect_exact(support::sphere_cloud(3, 1000, 2).points, 20, "sphere");
+    expect_exact(support::torus_cloud(1, 0.5, 0.12, 3).points, 20, "torus");
+}
+
+TEST(NearestNeighbors, TiesGoToTheLowerIndex) {
+    std::vector<double> grid;
+    for (int i = 0; i < 9 * 9 * 9; ++i) grid.insert(grid.end(), {double(i % 9), double(i / 9 % 9), double(i / 81)});
+    for (const int k : {3, 6, 20, 26}) expect_exact(grid, k, "grid");
+    Random random(4);
+    for (std::size_t i = 0; i < grid.size() / 3; ++i)
+        for (int c = 0; c < 3; ++c) std::swap(grid[3 * i + c], grid[3 * random.below(grid.size() / 3) + c]);
+    expect_exact(grid, 20, "shuffled lattice with repetitions");
+}
+
+TEST(NearestNeighbors, RepeatedAndDegeneratePoints) {
+    Random random(5);
+    std::vector<double> repeated = random_points(30, 6), line, equal, clusters;
+    for (int copy = 0; copy < 5; ++copy) repeated.insert(repeated.end(), repeated.begin(), repeated.begin() + 90);
+    for (int i = 0; i < 600; ++i) {
+        const double t = std::floor(200 * random.uniform());
+        line.insert(line.end(), {t, 2 * t, -t});
+        equal.insert(equal.end(), {1.5, -2, 0.25});
+        const double far = i % 3 == 0 ? 1e9 : 0;
+        clusters.insert(clusters.end(), {far + random.uniform(), random.uniform(), far + random.uniform()});
+    }
+    expect_exact(repeated, 20, "six copies of each");
+    expect_exact(line, 20, "line");
+    expect_exact(equal, 20, "all equal");
+    expect_exact(clusters, 20, "two far clusters");
+}
+
+TEST(NearestNeighbors, AnyMagnitude) {
+    std::vector<double> far = random_points(500, 7);
+    for (double& v : far) v += 4e6;
+    expect_exact(far, 20, "far from the origin");
+    expect_exact(random_points(300, 8, 1e-200), 10, "squares underflow");
+    std::vector<double> huge = random_points(300, 9, 1e300);
+    for (std::size_t i = 0; i < huge.size(); i += 2) huge[i] = -huge[i];
+    expect_exact(huge, 10, "squares overflow");
+}
+
+TEST(NearestNeighbors, FewerOthersThanAskedFor) {
+    expect_exact(random_points(5, 10), 4, "exactly all");
+    expect_exact(random_points(5, 11), 12, "more than all");
+    EXPECT_EQ(nearest_neighbors(Points(), 3).count(), 0u);
+    const std::vector<double> one = {1, 2, 3};
+    EXPECT_EQ(nearest_neighbors(one, 2).index, (std::vector<std::int32_t>{-1, -1}));
+    const std::vector<double> two = {0, 0, 0, 1, 0, 0};
+    EXPECT_EQ(nearest_neighbors(two, 2).index, (std::vector<std::int32_t>{1, -1, 0, -1}));
+}
+
+/// Large enough that anything quadratic would not end; the answers are known.
+TEST(NearestNeighbors, ManyEqualPointsAreNotSlow) {
+    const std::size_t n = 60000;
+    std::vector<double> points(3 * n, 0.5);
+    const Neighbors equal = nearest_neighbors(points, 20);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < 20; ++j)
+            ASSERT_EQ(equal[i][j], static_cast<std::int32_t>(i <= j ? j + 1 : j)) << "row " << i;
+    for (std::size_t i = 0; i < n; ++i) points[3 * i] = static_cast<double>(i % 2000);
+    const Neighbors piles = nearest_neighbors(points, 20);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < 20; ++j) {
+            const std::size_t pile = i % 2000, place = i / 2000;
+            ASSERT_EQ(piles[i][j], static_cast<std::int32_t>(pile + 2000 * (place <= j ? j + 1 : j))) << "row " << i;
+        }
+}
+
+TEST(NearestNeighbors, SameForAnyNumberOfThreads) {
+    const std::vector<double> points = support::torus_cloud(1, 0.4, 0.03, 13).points;
+    const Neighbors one = nearest_neighbors(points, 20, {1, {}});
+    EXPECT_EQ(one.index, nearest_neighbors(points, 20, {2, {}}).index);
+    EXPECT_EQ(one.index, nearest_neighbors(points, 20, {7, {}}).index);
+}
+
+TEST(NearestNeighbors, ReportsProgressAndCanBeCancelled) {
+    const std::vector<double> points = random_points(20000, 14);
+    double last = 0;
+    nearest_neighbors(points, 5, {1, [&](double done) {
+                                      EXPECT_GE(done, last);
+                                      last = done;
+                                      return true;
+                                  }});
+    EXPECT_DOUBLE_EQ(last, 1);
+    EXPECT_THROW(nearest_neighbors(points, 5, {1, [](double done) { return done < 0.5; }}), Cancelled);
+}
+
+TEST(NearestNeighbors, RefusesWhatItCannotDo) {
+    std::vector<double> points = random_points(10, 15);
+    EXPECT_EQ(refusal([&] { nearest_neighbors(points, 0); }), "k = 0 is too small; ask for at least 1 neighbour");
+    points[3 * 4 + 1] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(refusal([&] { nearest_neighbors(points, 3); }), "points[4] is not finite; leave such points out first");
+    const Points endless(points.data(), std::size_t(1) << 31);
+    EXPECT_EQ(refusal([&] { nearest_neighbors(endless, 3); }),
+              "points has 2147483648 entries, more than 2147483647; split the cloud");
+    EXPECT_EQ(refusal([&] { distinct_points(endless); }),
+              "points has 2147483648 entries, more than 2147483647; split the cloud");
+}
+
+TEST(DistinctPoints, KeepsTheFirstHolderOfEachPosition) {
+    const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+    const std::vector<double> points = {1, 2, 3, nan, 0, 0, 0.0, 0, 0, 1, 2, 3, -0.0, 0, -0.0, 0, 0, inf, 3, 2, 1};
+    const DistinctPoints distinct = distinct_points(points);
+    EXPECT_EQ(distinct.points, (std::vector<double>{1, 2, 3, 0, 0, 0, 3, 2, 1}));
+    EXPECT_EQ(distinct.source, (std::vector<std::int32_t>{0, 2, 6}));
+    EXPECT_EQ(distinct.target, (std::vector<std::int32_t>{0, -1, 1, 0, 1, -1, 2}));
+    EXPECT_EQ(distinct.duplicates, 2u);
+    EXPECT_EQ(distinct.non_finite, 2u);
+    EXPECT_TRUE(distinct_points(Points()).source.empty());
+}
+
+TEST(DistinctPoints, ManyPositionsAndCopies) {
+    Random random(16);
+    const std::vector<double> positions = random_points(5000, 17);
+    std::vector<double> points;
+    std::vector<std::size_t> drawn;
+    for (int i = 0; i < 20000; ++i) {
+        drawn.push_back(random.below(5000));
+        points.insert(points.end(), &positions[3 * drawn.back()], &positions[3 * drawn.back()] + 3);
+    }
+    const DistinctPoints distinct = distinct_points(points);
+    EXPECT_EQ(distinct.source.size() + distinct.duplicates, drawn.size());
+    std::vector<std::int32_t> first(5000, -1);
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+        if (first[drawn[i]] < 0) first[drawn[i]] = static_cast<std::int32_t>(i);
+        ASSERT_EQ(distinct.source[static_cast<std::size_t>(distinct.target[i])], first[drawn[i]]) << "input " << i;
+    }
+    EXPECT_TRUE(std::is_sorted(distinct.source.begin(), distinct.source.end()));
+}
