@@ -124,9 +124,11 @@ void catch_signals() {
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
-    // A reader that closes the pipe early is a failed write, told as one, not a death by signal.
+    sigaction(SIGHUP, &action, nullptr);
+    // A reader that closes the pipe early, or a file beyond the limit, is a failed write told as one, no death by signal.
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, nullptr);
+    sigaction(SIGXFSZ, &action, nullptr);
 }
 
 }  // namespace cli

@@ -60,7 +60,8 @@ class Progress {
     Clock::time_point drawn_ = begin_;
 };
 
-/// Ctrl-C and SIGTERM end the program at once with 128 + the signal's number (130, 143), leaving nothing half done.
+/// Ctrl-C, SIGTERM and SIGHUP end the program at once with 128 + the signal's number (130, 143, 129), leaving no
+/// half-written file.
 void catch_signals();
 
 }  // namespace cli

@@ -5,8 +5,9 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
-#include "gaussmap/neighbors.h"
+#include "gaussmap/types.h"
 
 namespace gaussmap {
 
@@ -18,16 +19,17 @@ inline void check_countable(Points points) {
                                     std::to_string(most) + "; split the cloud");
 }
 
-/// \throw std::invalid_argument unless the rows are of these points and every index is −1 or one of them.
-inline void check_neighbors(const Neighbors& neighbors, std::size_t points) {
-    if (neighbors.count() != points)
-        throw std::invalid_argument("neighbors has " + std::to_string(neighbors.count()) + " rows, but there are " +
+/// Rows of k neighbours, as `Neighbors` holds them.
+/// \throw std::invalid_argument unless there is one for each point and every index is −1 or one of the points.
+inline void check_neighbors(const std::vector<std::int32_t>& index, std::size_t k, std::size_t points) {
+    const std::size_t rows = k == 0 ? 0 : index.size() / k;
+    if (rows != points)
+        throw std::invalid_argument("neighbors has " + std::to_string(rows) + " rows, but there are " +
                                     std::to_string(points) + " points");
-    for (std::size_t i = 0; i < neighbors.index.size(); ++i)
-        if (neighbors.index[i] < -1 || neighbors.index[i] >= static_cast<std::int64_t>(points))
-            throw std::invalid_argument("neighbors[" + std::to_string(i / neighbors.k) + "][" +
-                                        std::to_string(i % neighbors.k) + "] = " + std::to_string(neighbors.index[i]) +
-                                        " is outside [-1, " + std::to_string(points) + ")");
+    for (std::size_t i = 0; i < index.size(); ++i)
+        if (index[i] < -1 || index[i] >= static_cast<std::int64_t>(points))
+            throw std::invalid_argument("neighbors[" + std::to_string(i / k) + "][" + std::to_string(i % k) + "] = " +
+                                        std::to_string(index[i]) + " is outside [-1, " + std::to_string(points) + ")");
 }
 
 /// \throw std::invalid_argument on a degree of jets that there is not.

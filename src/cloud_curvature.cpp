@@ -1,9 +1,11 @@
 // Total curvature of point clouds: the Dirichlet energy of the normals over each point's Delaunay fan.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "check.h"
 #include "check_cloud.h"

@@ -93,7 +93,7 @@ struct Jets {
 
 CloudNormalsResult cloud_normals(Points points, const Neighbors& neighbors, const CloudNormalsOptions& options) {
     check_degree(options.degree);
-    check_neighbors(neighbors, points.count);
+    check_neighbors(neighbors.index, neighbors.k, points.count);
     constexpr std::size_t grain = 1024;
     CloudNormalsResult result;
     result.normals.resize(3 * points.count);

@@ -18,8 +18,8 @@ std::vector<double> corrected_density(Points vertices, Triangles faces, Points u
         // From corner i on: the measures depend on differences of positions alone, so a far origin costs nothing.
         const Vec3 ij = load(vertices[j]) - load(vertices[i]), ik = load(vertices[k]) - load(vertices[i]);
         const Vec3 jk = load(vertices[k]) - load(vertices[j]), normal = cross(ij, ik);
-        const double longest = std::max(squared(ij), std::max(squared(ik), squared(jk)));
-        if (no_area(squared(normal), longest)) return false;
+        const double half_squares = 0.5 * (squared(ij) + squared(ik) + squared(jk));
+        if (no_area(squared(normal), half_squares)) return false;
         const Vec3 mean = (1.0 / 3) * (ui + uj + uk);
         double mu0 = 0.5 * dot(mean, normal);
         double mu1 = 0.5 * dot(mean, cross(ui - uk, ij) + cross(uj - ui, ik));

@@ -127,7 +127,7 @@ void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan) {
 
 Fans fans(Points points, Points normals, const Neighbors& neighbors, const Execution& run) {
     check_count("normals", normals.count, points.count, "points");
-    check_neighbors(neighbors, points.count);
+    check_neighbors(neighbors.index, neighbors.k, points.count);
     constexpr std::size_t grain = 1024;
     Fans result;
     result.begin.assign(points.count + 1, 0);

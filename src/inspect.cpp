@@ -135,8 +135,8 @@ void count_faces(Points vertices, Triangles faces, Inspection& found) {
         const Vec3 ab = load(vertices[static_cast<std::size_t>(abc[1])]) - a;
         const Vec3 ac = load(vertices[static_cast<std::size_t>(abc[2])]) - a;
         const double cross_squared = squared(cross(ab, ac));
-        const double longest = std::max({squared(ab), squared(ac), squared(ac - ab)});
-        if (no_area(cross_squared, longest))
+        const double half_squares = 0.5 * (squared(ab) + squared(ac) + squared(ac - ab));
+        if (no_area(cross_squared, half_squares))
             ++found.degenerate_faces;
         else if (std::isfinite(cross_squared))
             found.area += std::sqrt(cross_squared) / 2;

@@ -43,8 +43,9 @@ std::vector<double> normal_sums(Points vertices, Triangles faces, const Executio
     return scatter_faces<3>(faces, vertices.count, run, [&](std::size_t f, auto& corners) {
         const Vec3 a = load(vertices[faces[f][0]]), b = load(vertices[faces[f][1]]), c = load(vertices[faces[f][2]]);
         const Vec3 ab = b - a, ac = c - a, bc = c - b, normal = cross(ab, ac);
-        const double longest = std::max(squared(ab), std::max(squared(ac), squared(bc)));
-        if (!(longest < std::numeric_limits<double>::infinity()) || no_area(squared(normal), longest)) return false;
+        const double half_squares = 0.5 * (squared(ab) + squared(ac) + squared(bc));
+        if (!(half_squares < std::numeric_limits<double>::infinity()) || no_area(squared(normal), half_squares))
+            return false;
         const CornerNormals n = corner_normals<weights>(ab, ac, bc, normal);
         if (!finite(n.a) || !finite(n.b) || !finite(n.c)) return false;
         store(corners[0], n.a), store(corners[1], n.b), store(corners[2], n.c);

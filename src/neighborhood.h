@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/neighbors.h"
+#include "gaussmap/types.h"
 #include "vec.h"
 
 namespace gaussmap {

@@ -104,7 +104,7 @@ struct Adjacency {
 
 void orient_normals(Points points, const Neighbors& neighbors, std::vector<double>& normals, const Execution& run) {
     check_count("normals", normals.size() / 3, points.count, "points");
-    check_neighbors(neighbors, points.count);
+    check_neighbors(neighbors.index, neighbors.k, points.count);
     if (points.empty()) return;
     const Adjacency tree(spanning_forest(neighbors, normals, run), points.count);
 

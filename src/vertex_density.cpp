@@ -18,8 +18,6 @@ constexpr std::size_t vertex_block = 1 << 16;
 
 FusedKernel best_kernel() {
 #ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-        return fused_kernel_avx512;
     if (__builtin_cpu_supports("avx2")) return fused_kernel_avx2;
 #endif
     return fused_kernel_baseline;

@@ -32,7 +32,6 @@ struct FusedPass {
 using FusedKernel = void (*)(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_baseline(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_avx2(FusedPass&, std::size_t begin, std::size_t end);
-void fused_kernel_avx512(FusedPass&, std::size_t begin, std::size_t end);
 
 /// Sums for all vertices (2 each, room given), and kappa and area of every face unless null.
 /// \throw std::invalid_argument at an index outside the vertices.

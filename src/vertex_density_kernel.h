@@ -1,6 +1,6 @@
 // The fused pass over triangles, W at a time, for one instruction set. Included by vertex_density_<set>.cpp alone, each
-// compiled for its set; nothing here may have external linkage but the entry that each defines, or the linker could pick
-// a copy that the machine cannot run. Every set rounds every operation alike, so all give the same bits.
+// compiled for its set; nothing here may have external linkage but the entry that each defines, or the linker could
+// pick a copy that the machine cannot run. Every set rounds every operation alike, so all give the same bits.
 //
 // Per triangle abc with unit normals n (docs/method.md, eq. (3)):
 //   2A = |(b − a) × (c − a)|,   S = Σ_i d_i |n_j − n_k|²,   d_i the dot product of the two edges leaving corner i,
@@ -27,36 +27,35 @@ struct Lanes {
 typedef double Pair __attribute__((vector_size(16)));
 typedef double PairInMemory __attribute__((vector_size(16), aligned(8), may_alias));
 
-inline Pair load_pair(const double* p) { return *reinterpret_cast<const PairInMemory*>(p); }
+inline Pair load_pair(const double* p) {
+    return *reinterpret_cast<const PairInMemory*>(p);
+}
 
 #define GAUSSMAP_INLINE inline __attribute__((always_inline))
 
-// Pairs p[0], p[stride], … side by side.
+// The pairs at p[0] and p[2] side by side; for two lanes the one at p[0].
 template <int W>
 GAUSSMAP_INLINE typename Lanes<W>::Real join(const double* const* p, int offset) {
-    if constexpr (W == 2) {
+    if constexpr (W == 2)
         return load_pair(p[0] + offset);
-    } else if constexpr (W == 4) {
+    else
         return __builtin_shufflevector(load_pair(p[0] + offset), load_pair(p[2] + offset), 0, 1, 2, 3);
-    } else {
-        const auto low = __builtin_shufflevector(load_pair(p[0] + offset), load_pair(p[2] + offset), 0, 1, 2, 3);
-        const auto high = __builtin_shufflevector(load_pair(p[4] + offset), load_pair(p[6] + offset), 0, 1, 2, 3);
-        return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-    }
 }
 
 // Even (odd) entries of a and b in turn: a0 b0 a2 b2 … (a1 b1 a3 b3 …).
 template <int W, class Real>
 GAUSSMAP_INLINE Real evens(Real a, Real b) {
-    if constexpr (W == 2) return __builtin_shufflevector(a, b, 0, 2);
-    else if constexpr (W == 4) return __builtin_shufflevector(a, b, 0, 4, 2, 6);
-    else return __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14);
+    if constexpr (W == 2)
+        return __builtin_shufflevector(a, b, 0, 2);
+    else
+        return __builtin_shufflevector(a, b, 0, 4, 2, 6);
 }
 template <int W, class Real>
 GAUSSMAP_INLINE Real odds(Real a, Real b) {
-    if constexpr (W == 2) return __builtin_shufflevector(a, b, 1, 3);
-    else if constexpr (W == 4) return __builtin_shufflevector(a, b, 1, 5, 3, 7);
-    else return __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15);
+    if constexpr (W == 2)
+        return __builtin_shufflevector(a, b, 1, 3);
+    else
+        return __builtin_shufflevector(a, b, 1, 5, 3, 7);
 }
 
 template <int W>
@@ -86,9 +85,6 @@ GAUSSMAP_INLINE typename Lanes<W>::Real dot(const Vectors<W>& a, const Vectors<W
 // Compilers do not make one instruction of a loop of square roots over lanes.
 template <int W, class Real>
 GAUSSMAP_INLINE Real square_root(Real a) {
-#ifdef __AVX512F__
-    if constexpr (W == 8) return (Real)_mm512_maskz_sqrt_pd(0xff, (__m512d)a);
-#endif
 #ifdef __AVX2__
     if constexpr (W == 4) return (Real)_mm256_sqrt_pd((__m256d)a);
 #endif
@@ -102,8 +98,8 @@ GAUSSMAP_INLINE Real square_root(Real a) {
 
 template <int W>
 struct Energies {
-    typename Lanes<W>::Real kappa, area;          // S / 2A and 2A, both 0 where the triangle adds nothing
-    typename Lanes<W>::Mask usable, degenerate;   // all ones where so
+    typename Lanes<W>::Real kappa, area;         // S / 2A and 2A, both 0 where the triangle adds nothing
+    typename Lanes<W>::Mask usable, degenerate;  // all ones where so
 };
 
 template <int W>
@@ -118,10 +114,8 @@ GAUSSMAP_INLINE Energies<W> energies(const double* xyz, const double* normals, c
     const Real s = da * dot<W>(nbc, nbc) + db * dot<W>(nac, nac) + dc * dot<W>(nab, nab);
     const Vectors<W> cross = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
     const Real cross_squared = dot<W>(cross, cross);
-    // |ab|² = da + db and so on: the longest edge leaves out the smallest of the three.
-    const Real least = da < db ? (da < dc ? da : dc) : (db < dc ? db : dc);
-    const Real longest_squared = da + db + dc - least;
-    const Real threshold = no_area_ratio * (longest_squared * longest_squared);
+    const Real half_squares = da + db + dc;
+    const Real threshold = no_area_ratio * (half_squares * half_squares);
     const Real huge = Real{} + __DBL_MAX__, zero = Real{};
 
     Energies<W> e;
@@ -136,10 +130,10 @@ GAUSSMAP_INLINE Energies<W> energies(const double* xyz, const double* normals, c
 }
 
 // Add the pairs of `valid` triangles to their corners; corners that an earlier chunk owns are set aside.
-template <bool Alone>
-GAUSSMAP_INLINE void add_corners(const FusedPass& pass, const std::int32_t* abc, const double* pairs, int order, int valid) {
+template <int W, bool Alone>
+GAUSSMAP_INLINE void add_corners(FusedPass& pass, const std::int32_t* abc, const double* pairs, int valid) {
     for (int l = 0; l < valid; ++l) {
-        const Pair pair = *reinterpret_cast<const Pair*>(pairs + (l & 1) * order + (l & ~1));
+        const Pair pair = *reinterpret_cast<const Pair*>(pairs + (l & 1) * W + (l & ~1));
         for (int corner = 0; corner < 3; ++corner) {
             const std::int32_t vertex = abc[3 * l + corner];
             if (Alone || pass.owner[vertex] == pass.chunk) {
@@ -160,33 +154,45 @@ GAUSSMAP_INLINE void write_faces(const FusedPass& pass, std::size_t face, const 
     for (int l = 0; l < valid; ++l) pass.face_kappa[face + l] = kappa[l], pass.face_area[face + l] = area[l];
 }
 
-template <int W, bool Alone>
-GAUSSMAP_INLINE void batch(const FusedPass& pass, std::size_t face, const std::int32_t* abc, int valid) {
+// The energies of W triangles as pairs (even ones, then odd ones), and to the faces where they are wanted.
+template <int W>
+GAUSSMAP_INLINE void compute(const FusedPass& pass, std::size_t face, const std::int32_t* abc, int valid,
+                             double* pairs) {
     const Energies<W> e = energies<W>(pass.xyz, pass.normals, abc);
-    alignas(64) double pairs[2 * W];
     *reinterpret_cast<typename Lanes<W>::Real*>(pairs) = evens<W>(e.kappa, e.area);
     *reinterpret_cast<typename Lanes<W>::Real*>(pairs + W) = odds<W>(e.kappa, e.area);
-    add_corners<Alone>(pass, abc, pairs, W, valid);
     if (pass.face_kappa) write_faces<W>(pass, face, e, valid);
 }
 
 template <int W, bool Alone>
 inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
+    alignas(64) double pairs[2][2 * W];
     std::size_t face = begin;
-    for (; face + W <= end; face += W) batch<W, Alone>(pass, face, pass.abc + 3 * face, W);
+    int turn = 0;
+    // A batch is added one turn late: additions to one vertex wait for each other, and the arithmetic of the next batch
+    // fills that time.
+    for (; face + W <= end; face += W, turn ^= 1) {
+        compute<W>(pass, face, pass.abc + 3 * face, W, pairs[turn]);
+        if (face > begin) add_corners<W, Alone>(pass, pass.abc + 3 * (face - W), pairs[turn ^ 1], W);
+    }
+    if (face > begin) add_corners<W, Alone>(pass, pass.abc + 3 * (face - W), pairs[turn ^ 1], W);
     if (face == end) return;
     // The last few, made up to W with copies of the last one, which are not added.
     std::int32_t abc[3 * W];
     for (int l = 0; l < W; ++l)
         for (int corner = 0; corner < 3; ++corner)
             abc[3 * l + corner] = pass.abc[3 * (face + l < end ? face + l : end - 1) + corner];
-    batch<W, Alone>(pass, face, abc, static_cast<int>(end - face));
+    const int valid = static_cast<int>(end - face);
+    compute<W>(pass, face, abc, valid, pairs[turn]);
+    add_corners<W, Alone>(pass, abc, pairs[turn], valid);
 }
 
 template <int W>
 inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
-    if (pass.owner) run<W, false>(pass, begin, end);
-    else run<W, true>(pass, begin, end);
+    if (pass.owner)
+        run<W, false>(pass, begin, end);
+    else
+        run<W, true>(pass, begin, end);
 }
 
 #undef GAUSSMAP_INLINE

@@ -71,12 +71,13 @@ struct Medians : benchmark::ConsoleReporter {
 void summary(std::map<std::string, double>& rate, const std::string& name, std::size_t triangles) {
     const double one = rate["fused/" + name + "/1"], two = rate["fused/" + name + "/2"];
     const double limit = rate["triad"] * 24 / bytes_per_triangle;
-    std::printf("%s, %.2f M triangles: fused pass %.0f M triangles/s on one thread = %.0f %% of the %.0f that the memory "
-                "allows (triad %.1f GB/s, %.0f bytes a triangle); two threads %.2f x; %.0f x the textbook's %.2f; "
-                "with normals and faces %.0f\n",
-                name.c_str(), static_cast<double>(triangles) * 1e-6, one * 1e-6, 100 * one / limit, limit * 1e-6,
-                rate["triad"] * 24e-9, bytes_per_triangle, two / one, one / rate["textbook"], rate["textbook"] * 1e-6,
-                rate["whole/" + name + "/1"] * 1e-6);
+    std::printf(
+        "%s, %.2f M triangles: fused pass %.0f M triangles/s on one thread = %.0f %% of the %.0f that the memory "
+        "allows (triad %.1f GB/s, %.0f bytes a triangle); two threads %.2f x; %.0f x the textbook's %.2f; "
+        "with normals and faces %.0f\n",
+        name.c_str(), static_cast<double>(triangles) * 1e-6, one * 1e-6, 100 * one / limit, limit * 1e-6,
+        rate["triad"] * 24e-9, bytes_per_triangle, two / one, one / rate["textbook"], rate["textbook"] * 1e-6,
+        rate["whole/" + name + "/1"] * 1e-6);
 }
 
 }  // namespace

@@ -7,13 +7,13 @@ using namespace gaussmap;
 
 namespace {
 
-struct Run {
+struct Measured {
     Geometry cloud;
     CloudCurvature result;
 };
 
-Run run_on(const char* file, bool given) {
-    Run run;
+Measured run_on(const char* file, bool given) {
+    Measured run;
     run.cloud = read((support::data_folder() / file).string());
     const Points points(run.cloud.vertices);
     EXPECT_EQ(run.cloud.normals.empty(), !given) << file;
@@ -32,7 +32,7 @@ Run run_on(const char* file, bool given) {
 
 TEST(CloudCurvatureReal, LionWithItsNormals) {
     NEED_DATA();
-    const Run run = run_on("large/lion_takanawa.ply", true);
+    const Measured run = run_on("large/lion_takanawa.ply", true);
     EXPECT_EQ(run.result.density.size(), 272768u);
     EXPECT_EQ(run.result.duplicates, 6u);
     EXPECT_LT(run.result.undefined, 100u);
@@ -40,21 +40,21 @@ TEST(CloudCurvatureReal, LionWithItsNormals) {
 
 TEST(CloudCurvatureReal, TurtleWithoutNormals) {
     NEED_DATA();
-    const Run run = run_on("clouds/cturtle.pcd", false);
+    const Measured run = run_on("clouds/cturtle.pcd", false);
     EXPECT_EQ(run.result.undefined, 0u);
     EXPECT_GT(run.result.boundary, 0u);
 }
 
 TEST(CloudCurvatureReal, RoomOfWhichHalfIsDuplicate) {
     NEED_DATA();
-    const Run run = run_on("clouds/room_scan1.pcd", false);
+    const Measured run = run_on("clouds/room_scan1.pcd", false);
     EXPECT_GT(run.result.duplicates, run.cloud.vertex_count() / 3);
     EXPECT_EQ(run.result.undefined, 0u);
 }
 
 TEST(CloudCurvatureReal, TableOfWhichAThirdIsNotFinite) {
     NEED_DATA();
-    const Run run = run_on("clouds/table_scene_mug_stereo_textured.pcd", false);
+    const Measured run = run_on("clouds/table_scene_mug_stereo_textured.pcd", false);
     EXPECT_GT(run.result.non_finite, run.cloud.vertex_count() / 4);
     EXPECT_EQ(run.result.undefined, run.result.non_finite);
 }

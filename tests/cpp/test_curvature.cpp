@@ -100,9 +100,9 @@ TEST(MeshCurvature, PlaneIsExactlyZero) {
 TEST(MeshCurvature, ConvergesQuadraticallyOnRegularGrids) {
     for (const Estimator e : {Estimator::dirichlet, Estimator::corrected}) {
         const Surface coarse = torus(1, 0.4, 40, 24), fine = torus(1, 0.4, 160, 96);
-        const double rate =
-            std::log(support::rmse(density(coarse, e), coarse.density) / support::rmse(density(fine, e), fine.density)) /
-            std::log(4.0);
+        const double rate = std::log(support::rmse(density(coarse, e), coarse.density) /
+                                     support::rmse(density(fine, e), fine.density)) /
+                            std::log(4.0);
         EXPECT_GT(rate, 1.9) << static_cast<int>(e);
     }
 }
@@ -234,7 +234,8 @@ TEST(MeshCurvature, FusedPassGivesTheSameBits) {
 TEST(MeshCurvature, UndefinedIsNaNAndCounted) {
     // Two triangles, an isolated vertex, a degenerate triangle, one with a NaN corner and one with an infinite one.
     const double inf = std::numeric_limits<double>::infinity();
-    const std::vector<double> vertices = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 5, 5, not_a_number, 0, 0, 2, 0, 0, inf, 0, 0};
+    const std::vector<double> vertices = {0, 0, 0, 1, 0, 0,   1, 1, 0, 0, 1, 0, 5, 5, 5, not_a_number,
+                                          0, 0, 2, 0, 0, inf, 0, 0};
     const std::vector<std::int32_t> faces = {0, 1, 2, 0, 2, 3, 0, 1, 6, 1, 2, 5, 2, 7, 3, 3, 3, 1};
     const MeshCurvature c = mesh_curvature(vertices, faces);
     EXPECT_EQ(c.degenerate_faces, 2u);  // 0 1 6 on a line, 3 3 1
@@ -278,9 +279,7 @@ TEST(MeshCurvature, MessagesNameArrayIndexAndValue) {
     const auto message = [&](std::vector<std::int32_t> faces, std::vector<double> normals) -> std::string {
         try {
             mesh_curvature(vertices, faces, normals);
-        } catch (const std::invalid_argument& e) {
-            return e.what();
-        }
+        } catch (const std::invalid_argument& e) { return e.what(); }
         return "no error";
     };
     EXPECT_EQ(message({0, 1, 2, 0, 3, 2}, {}), "faces[1][1] = 3 is outside [0, 3)");
@@ -297,7 +296,11 @@ TEST(MeshCurvature, ProgressRisesAndCancels) {
     for (const int threads : {1, 2}) {
         double last = 0;
         MeshCurvatureOptions options;
-        options.run = {threads, [&](double f) { EXPECT_GE(f, last); last = f; return true; }};
+        options.run = {threads, [&](double f) {
+                           EXPECT_GE(f, last);
+                           last = f;
+                           return true;
+                       }};
         mesh_curvature(s.vertices, s.faces, {}, options);
         EXPECT_GT(last, 0.5);
         options.run.progress = [](double) { return false; };

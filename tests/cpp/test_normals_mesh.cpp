@@ -79,7 +79,5 @@ TEST(MeshNormals, MessageNamesTheIndex) {
     try {
         mesh_normals(v, f);
         FAIL() << "no error";
-    } catch (const std::invalid_argument& e) {
-        EXPECT_STREQ(e.what(), "faces[0][2] = 1 is outside [0, 1)");
-    }
+    } catch (const std::invalid_argument& e) { EXPECT_STREQ(e.what(), "faces[0][2] = 1 is outside [0, 1)"); }
 }

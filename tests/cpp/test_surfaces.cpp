@@ -111,8 +111,10 @@ double total_gauss(const Surface& s) {
 }
 
 TEST(GaussBonnet, HoldsWhereTheTotalIsKnown) {
-    for (const Case& c : all_cases())
-        if (!std::isnan(c.total_gauss)) EXPECT_NEAR(total_gauss(c.make(plain)), c.total_gauss, 0.1) << c.name;
+    for (const Case& c : all_cases()) {
+        if (std::isnan(c.total_gauss)) continue;
+        EXPECT_NEAR(total_gauss(c.make(plain)), c.total_gauss, 0.1) << c.name;
+    }
 }
 
 TEST(GaussBonnet, ConvergesQuadratically) {

@@ -37,12 +37,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Geometry geometry;
     try {
         geometry = read_bytes(bytes, "fuzz", format, {1, {}});
-    } catch (const FormatError&) {
-        return 0;
-    }
+    } catch (const FormatError&) { return 0; }
     require(size_in_memory(geometry) <= 128 * bytes.size() + 4096);
     for (const bool ascii : {false, true}) {
-        const Geometry again = read_bytes(write_bytes(geometry, {Format::ply, ascii, false}), "again.ply", Format::ply, {1, {}});
+        const Geometry again =
+            read_bytes(write_bytes(geometry, {Format::ply, ascii, false}), "again.ply", Format::ply, {1, {}});
         require(again.vertices.size() == geometry.vertices.size() && again.faces == geometry.faces);
     }
     weld(geometry);

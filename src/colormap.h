@@ -1,0 +1,38 @@
+// Colours in linear light, where they may be added and shaded.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/picture.h"
+
+namespace gaussmap {
+
+struct LinearRgb {
+    float r = 0, g = 0, b = 0;
+};
+
+/// Of an sRGB byte, 0 to 1; and back, rounded.
+float linear_of(std::uint8_t encoded);
+std::uint8_t encoded_of(float linear);
+
+/// The colours of values between `low` and `high`, looked up.
+class Ramp {
+  public:
+    Ramp(double low, double high);
+
+    const LinearRgb& operator()(double value) const {
+        const double t = (value - low_) * scale_;
+        // Written so that NaN takes the first branch.
+        return !(t > 0) ? colors_.front() : t >= 1 ? colors_.back() : colors_[static_cast<std::size_t>(t * steps + 0.5)];
+    }
+    const LinearRgb& undefined() const { return undefined_; }
+
+  private:
+    static constexpr int steps = 1024;
+    double low_, scale_;
+    std::vector<LinearRgb> colors_;
+    LinearRgb undefined_;
+};
+
+}  // namespace gaussmap

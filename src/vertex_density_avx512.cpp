@@ -1,9 +1,0 @@
-#include "vertex_density_kernel.h"
-
-namespace gaussmap {
-
-void fused_kernel_avx512(FusedPass& pass, std::size_t begin, std::size_t end) {
-    run<8>(pass, begin, end);
-}
-
-}  // namespace gaussmap
