@@ -19,6 +19,12 @@ const char* name_of(gaussmap::Type type) {
     return names[static_cast<std::size_t>(type)];
 }
 
+/// Of the file's content; by its name where the reader did not say.
+const char* name_of(gaussmap::Format format) {
+    constexpr const char* names[] = {"unknown", "ply", "obj", "off", "stl", "xyz", "pcd"};
+    return names[static_cast<std::size_t>(format)];
+}
+
 Json json_of(const std::vector<Property>& properties) {
     Json out = Json::array();
     for (const Property& p : properties) out.push_back({{"name", p.name}, {"type", name_of(p.type)}, {"list", p.list}});
@@ -55,6 +61,7 @@ Json defects(const Inspection& found, bool mesh) {
 Json report_on(const std::string& path, const Geometry& geometry, const Inspection& found) {
     const bool mesh = !geometry.faces.empty();
     Json report = {{"file", path}, {"kind", mesh ? "mesh" : "cloud"}};
+    report["format"] = name_of(geometry.format);
     report["vertices"] = found.vertices;
     report["faces"] = found.faces;
     report["polygons"] = geometry.polygons.empty() ? Json() : Json(geometry.polygons.count());
@@ -99,6 +106,7 @@ void add_mesh_rows(Table& table, const Json& report) {
 
 Table table_of(const Json& report, bool mesh) {
     Table table;
+    table.add("format", report["format"].get<std::string>());
     table.add("vertices", fmt::format("{} ({})", count(report["vertices"].get<std::size_t>()),
                                       report["vertex_type"].get<std::string>()));
     if (!report["width"].is_null()) table.add("organised", count(report["width"].get<std::size_t>()) + " points a row");

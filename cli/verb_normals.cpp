@@ -29,7 +29,7 @@ constexpr const char* about =
     "Where nothing defines a normal (a vertex of no face, neighbours on a line) it is NaN; the report counts these.";
 
 constexpr const char* examples =
-    "gaussmap normals scan.pcd -o scan.ply              a cloud: fitted jets, oriented\n"
+    "gaussmap normals scan.pcd -o scan.ply              a cloud, oriented\n"
     "gaussmap normals scan.xyz -o out.ply --method pca  fitted planes\n"
     "gaussmap normals bunny.obj -o bunny.ply            a mesh: weights of Max 1999";
 

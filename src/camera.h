@@ -21,9 +21,9 @@ struct Viewport {
 /// Orthographic: pixels from the viewport's corner, x to the right, y down, z (pixels too) toward the eye.
 struct Projection {
     View view;
-    Vec3 centre;                  ///< of the box, taken away first: a far origin costs no accuracy
-    double scale = 1;             ///< pixels a length
-    double x = 0, y = 0;          ///< pixel of the centre
+    Vec3 centre;          ///< of the box, taken away first: a far origin costs no accuracy
+    double scale = 1;     ///< pixels a length
+    double x = 0, y = 0;  ///< pixel of the centre
 
     Vec3 operator()(Vec3 p) const {
         const Vec3 d = p - centre;

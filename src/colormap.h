@@ -24,7 +24,9 @@ class Ramp {
     const LinearRgb& operator()(double value) const {
         const double t = (value - low_) * scale_;
         // Written so that NaN takes the first branch.
-        return !(t > 0) ? colors_.front() : t >= 1 ? colors_.back() : colors_[static_cast<std::size_t>(t * steps + 0.5)];
+        return !(t > 0) ? colors_.front()
+               : t >= 1 ? colors_.back()
+                        : colors_[static_cast<std::size_t>(t * steps + 0.5)];
     }
     const LinearRgb& undefined() const { return undefined_; }
 

@@ -11,26 +11,36 @@ namespace {
 constexpr std::size_t block = 1 << 14;           // faces looked at in one go
 constexpr std::size_t smallest_chunk = 1 << 14;  // below this a second thread costs more than it brings
 
+/// Lower the owners of the vertices first … last to `chunk`; whether any was higher.
+bool lower_owners(const std::int32_t* first, const std::int32_t* last, std::uint8_t chunk, std::uint8_t* owner) {
+    bool lowered = false;
+    for (; first != last; ++first) {
+        std::atomic_ref<std::uint8_t> o(owner[*first]);
+        if (o.load(std::memory_order_relaxed) <= chunk) continue;
+        o.store(chunk, std::memory_order_relaxed);
+        lowered = true;
+    }
+    return lowered;
+}
+
 /// Lower owner[v] to the smallest chunk that touches v. Two threads may race for one vertex and the higher chunk win,
 /// so passes are made until one finds nothing to lower. Whatever wins is lower than what stood there before the pass:
 /// it ends.
 void lower_owners(Triangles faces, FaceChunks& chunks, const Execution& run) {
     const std::size_t last = chunks.count() - 1;
     const std::size_t touched = chunks.begin[last];  // the last chunk owns by default
+    std::uint8_t* const owner = chunks.owner.data();
     std::atomic<bool> again{true};
     // With two chunks only chunk 0 writes: no race, one pass.
     while (again.exchange(false)) {
         for_blocks(touched, block, run, [&](std::size_t, std::size_t begin, std::size_t end) {
-            std::size_t chunk = 0;
+            std::uint8_t chunk = 0;
             bool lowered = false;
-            for (std::size_t f = begin; f < end; ++f) {
-                while (f >= chunks.begin[chunk + 1]) ++chunk;
-                for (int corner = 0; corner < 3; ++corner) {
-                    std::atomic_ref<std::uint8_t> owner(chunks.owner[faces[f][corner]]);
-                    if (owner.load(std::memory_order_relaxed) <= chunk) continue;
-                    owner.store(static_cast<std::uint8_t>(chunk), std::memory_order_relaxed);
-                    lowered = true;
-                }
+            while (begin < end) {
+                while (begin >= chunks.begin[chunk + 1]) ++chunk;
+                const std::size_t stop = std::min(end, chunks.begin[chunk + 1]);
+                lowered |= lower_owners(faces.abc + 3 * begin, faces.abc + 3 * stop, chunk, owner);
+                begin = stop;
             }
             if (lowered && last > 1) again.store(true, std::memory_order_relaxed);
         });

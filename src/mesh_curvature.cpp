@@ -18,18 +18,20 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Densities of faces from kappa and area, and the counts over faces. Sums run in the order of the faces.
-void finish_faces(MeshCurvature& result) {
+/// The counts over faces, and the sum of kappa in the order of the faces.
+void count_faces(MeshCurvature& result) {
+    std::size_t undefined = 0, without_density = 0;
+    double sum = 0;
     for (std::size_t f = 0; f < result.kappa.size(); ++f) {
-        const double kappa = result.kappa[f], area = result.face_density[f];
-        result.face_density[f] = kappa / area;  // 0/0 and NaN: undefined
-        if (std::isnan(kappa))
-            ++result.undefined_faces;
-        else if (area == 0)
-            ++result.degenerate_faces;
-        else
-            result.kappa_sum += kappa;
+        const double kappa = result.kappa[f];
+        const bool defined = kappa == kappa;
+        sum += defined ? kappa : 0;
+        undefined += !defined;
+        without_density += result.face_density[f] != result.face_density[f];
     }
+    result.kappa_sum = sum;
+    result.undefined_faces = undefined;
+    result.degenerate_faces = without_density - undefined;
 }
 
 }  // namespace
@@ -49,17 +51,18 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     start = std::chrono::steady_clock::now();
     const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);
-    result.face_density.resize(faces.count);  // the areas at first
+    result.face_density.resize(faces.count);
     fused_pass(vertices, faces, result.normals, sums.get(), result.kappa.data(), result.face_density.data(),
                part_of(options.run, 0.5, 1));
-    finish_faces(result);
+    count_faces(result);
     if (options.estimator == Estimator::corrected) {
         result.density = corrected_density(vertices, faces, result.normals, {options.run.threads, {}});
     } else {
         result.density.resize(vertices.count);
-        for (std::size_t v = 0; v < vertices.count; ++v)
-            result.density[v] =
-                sums[2 * v + 1] > 0 ? sums[2 * v] / sums[2 * v + 1] : std::numeric_limits<double>::quiet_NaN();
+        for (std::size_t v = 0; v < vertices.count; ++v) {
+            const double quotient = sums[2 * v] / sums[2 * v + 1];
+            result.density[v] = sums[2 * v + 1] > 0 ? quotient : std::numeric_limits<double>::quiet_NaN();
+        }
     }
     for (const double d : result.density) result.undefined += std::isnan(d);
     result.seconds_curvature = seconds_since(start);

@@ -47,14 +47,15 @@ std::vector<SetAside> run_chunk(FusedKernel kernel, FusedPass pass, const FaceCh
 }  // namespace
 
 void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
-                double* face_area, const Execution& run) {
+                double* face_density, const Execution& run) {
     check_count("normals", unit_normals.count, vertices.count, "vertices");
     const FaceChunks chunks = chunk_faces(faces, vertices.count, run);
     for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
         std::fill(sums + 2 * begin, sums + 2 * end, 0.0);
     });
     static const FusedKernel kernel = best_kernel();
-    const FusedPass pass{vertices.xyz, unit_normals.xyz, faces.abc, sums, face_kappa, face_area, nullptr, 0, nullptr};
+    const FusedPass pass{vertices.xyz, unit_normals.xyz, faces.abc, sums,   face_kappa,
+                         face_density, nullptr,          0,         nullptr};
     std::vector<std::vector<SetAside>> aside(chunks.count());
     for_blocks(chunks.count(), 1, chunks.count() > 1 ? run : Execution{1, {}},
                [&](std::size_t c, std::size_t, std::size_t) { aside[c] = run_chunk(kernel, pass, chunks, c, run); });
@@ -68,8 +69,8 @@ void vertex_density(Points vertices, Triangles faces, Points unit_normals, doubl
     fused_pass(vertices, faces, unit_normals, sums.get(), nullptr, nullptr, run);
     for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-            const double twice_area = sums[2 * v + 1];
-            density[v] = twice_area > 0 ? sums[2 * v] / twice_area : std::numeric_limits<double>::quiet_NaN();
+            const double twice_area = sums[2 * v + 1], quotient = sums[2 * v] / twice_area;
+            density[v] = twice_area > 0 ? quotient : std::numeric_limits<double>::quiet_NaN();
             area[v] = 0.5 * twice_area;
         }
     });

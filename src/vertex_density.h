@@ -22,7 +22,7 @@ struct FusedPass {
     const std::int32_t* abc;    // checked
     double* sums;               // 2 a vertex: Σ S/2A and Σ 2A
     double* face_kappa;         // a face, or null
-    double* face_area;          // a face, or null with face_kappa
+    double* face_density;       // a face, or null with face_kappa
     const std::uint8_t* owner;  // null: this chunk owns every vertex
     std::uint8_t chunk;
     mutable SetAside* aside;  // room for 3 a face; moved on
@@ -33,9 +33,9 @@ using FusedKernel = void (*)(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_baseline(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_avx2(FusedPass&, std::size_t begin, std::size_t end);
 
-/// Sums for all vertices (2 each, room given), and kappa and area of every face unless null.
+/// Sums for all vertices (2 each, room given), and kappa and density of every face unless null.
 /// \throw std::invalid_argument at an index outside the vertices.
 void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
-                double* face_area, const Execution& run);
+                double* face_density, const Execution& run);
 
 }  // namespace gaussmap

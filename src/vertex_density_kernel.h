@@ -150,8 +150,8 @@ GAUSSMAP_INLINE void write_faces(const FusedPass& pass, std::size_t face, const 
     using Real = typename Lanes<W>::Real;
     const Real undefined = Real{} + __builtin_nan("");
     const Real kappa = e.usable ? 0.5 * e.kappa : (e.degenerate ? Real{} : undefined);
-    const Real area = e.usable ? 0.5 * e.area : (e.degenerate ? Real{} : undefined);
-    for (int l = 0; l < valid; ++l) pass.face_kappa[face + l] = kappa[l], pass.face_area[face + l] = area[l];
+    const Real density = e.usable ? e.kappa / e.area : undefined;
+    for (int l = 0; l < valid; ++l) pass.face_kappa[face + l] = kappa[l], pass.face_density[face + l] = density[l];
 }
 
 // The energies of W triangles as pairs (even ones, then odd ones), and to the faces where they are wanted.
@@ -165,7 +165,8 @@ GAUSSMAP_INLINE void compute(const FusedPass& pass, std::size_t face, const std:
 }
 
 template <int W, bool Alone>
-inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
+inline SetAside* run(const FusedPass& given, std::size_t begin, std::size_t end) {
+    FusedPass pass = given;  // a copy that no store can alias stays in registers
     alignas(64) double pairs[2][2 * W];
     std::size_t face = begin;
     int turn = 0;
@@ -176,7 +177,7 @@ inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
         if (face > begin) add_corners<W, Alone>(pass, pass.abc + 3 * (face - W), pairs[turn ^ 1], W);
     }
     if (face > begin) add_corners<W, Alone>(pass, pass.abc + 3 * (face - W), pairs[turn ^ 1], W);
-    if (face == end) return;
+    if (face == end) return pass.aside;
     // The last few, made up to W with copies of the last one, which are not added.
     std::int32_t abc[3 * W];
     for (int l = 0; l < W; ++l)
@@ -185,14 +186,12 @@ inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
     const int valid = static_cast<int>(end - face);
     compute<W>(pass, face, abc, valid, pairs[turn]);
     add_corners<W, Alone>(pass, abc, pairs[turn], valid);
+    return pass.aside;
 }
 
 template <int W>
 inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
-    if (pass.owner)
-        run<W, false>(pass, begin, end);
-    else
-        run<W, true>(pass, begin, end);
+    pass.aside = pass.owner ? run<W, false>(pass, begin, end) : run<W, true>(pass, begin, end);
 }
 
 #undef GAUSSMAP_INLINE

@@ -82,8 +82,8 @@ struct CloudCurvature {
     std::size_t undefined = 0;        ///< points whose density is NaN
     std::size_t duplicates = 0;       ///< points at the position of an earlier one (they share its result)
     std::size_t non_finite = 0;       ///< points with a NaN or infinite coordinate
-    std::size_t boundary = 0;         ///< points whose fan is open
-    std::size_t lowered = 0;          ///< points whose jet had to take a lower degree than asked for
+    std::size_t boundary = 0;         ///< points whose fan is open; copies count once
+    std::size_t lowered = 0;          ///< points whose jet had to take a lower degree than asked for; copies count once
     double seconds_neighbors = 0;
     double seconds_normals = 0;
     double seconds_curvature = 0;
@@ -95,7 +95,7 @@ struct CloudCurvature {
 /// \param normals  n vectors of any positive length, or empty to estimate them.
 /// \throw std::invalid_argument: k < 3, a degree outside 1…4, more than 2³¹ points, or a number of
 ///        normals that is neither 0 nor n.
-/// Time O(n (log n + k log k)); memory 4k + 64 bytes a point beyond the input.
+/// Time O(n (log n + k log k)); memory about 4k + 110 bytes a point beyond the input.
 /// Source: the paper; fan by inversion, eq. (7) of docs/method.md.
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
 

@@ -7,6 +7,7 @@
 //   neighbors.h  k nearest neighbours, fans, points without repetitions
 //   surfaces.h   analytic surfaces with exact normals and curvature
 //   inspect.h    boundary, non-manifold, degenerate, duplicate: what is in a file
+//   picture.h    a picture of the result, and its PNG
 //   io.h         PLY, OBJ, OFF, STL, XYZ, PCD
 //
 //   auto bunny  = gaussmap::read("bunny.ply");
@@ -22,5 +23,6 @@
 #include "gaussmap/io.h"
 #include "gaussmap/neighbors.h"
 #include "gaussmap/normals.h"
+#include "gaussmap/picture.h"
 #include "gaussmap/surfaces.h"
 #include "gaussmap/types.h"

@@ -23,7 +23,8 @@ struct Neighbors {
 /// at distance 0). Exact, and the same bits for any number of threads.
 /// \param points  n finite points, at most 2³¹ − 1.
 /// \throw std::invalid_argument on k < 1, a non-finite point (its index is named) or too many points.
-/// Time O(n log n + n k) for points on surfaces; memory 4k + 40 bytes a point.
+/// Time O(n log n + n k) for points on surfaces; memory 4k + 46 bytes a point.
+/// However many points are equal, it is never quadratic.
 Neighbors nearest_neighbors(Points points, int k, const Execution& run = {});
 
 /// The cloud without repetitions: finite points, each position once (its first holder), in input order.
@@ -52,7 +53,9 @@ struct Fans {
 /// \param points     n finite points.
 /// \param normals    n normals of any positive length; a NaN or zero normal gives an empty fan.
 /// \param neighbors  of these points.
-/// \throw std::invalid_argument on arrays of different lengths.
+/// Neighbours cocircular with the point all stay in its fan, so that the fan does not depend on how points are numbered;
+/// of neighbours in one direction the nearest stays, of equal ones the first.
+/// \throw std::invalid_argument on arrays of different lengths, or a neighbour that is no point (its row is named).
 /// Time O(n k log k).
 Fans fans(Points points, Points normals, const Neighbors& neighbors, const Execution& run = {});
 

@@ -41,9 +41,9 @@ struct PictureOptions {
 
 /// Draw a mesh, or a cloud where there are no faces, coloured by one value a vertex. Orthographic.
 ///
-/// A mesh is shaded by smooth normals, by those of its faces at creases. Points are discs as large as the spacing around
-/// them, turned along their normals where given. Values are interpolated, then coloured; what is not finite is grey.
-/// Pictures less than 200 pixels wide or high have no legend.
+/// A mesh is shaded by smooth normals, by those of its faces at creases. Points are discs as large as the spacing
+/// around them, turned along their normals where given. Values are interpolated, then coloured; what is not finite is
+/// grey. Pictures less than 200 pixels wide or high have no legend.
 ///
 /// \param vertices  n points; those not finite, and the faces that use them, are left out.
 /// \param values    n values.

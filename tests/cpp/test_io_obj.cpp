@@ -180,6 +180,21 @@ TEST(Obj, CutAndDamagedFilesAreReadOrRefused) {
     support::check_damage(text, "t.obj", Format::obj);
 }
 
+TEST(Obj, TellsHowFarItIsAndCanBeCancelled) {
+    std::string text;
+    for (int i = 0; i < 200000; ++i) text += "v 0 0 0\n";
+    std::vector<double> seen;
+    gaussmap::read_bytes(text, "t.obj", Format::obj, {1, [&](double fraction) {
+                                                          seen.push_back(fraction);
+                                                          return true;
+                                                      }});
+    ASSERT_EQ(seen.size(), 3u);
+    EXPECT_NEAR(seen[0], 65536.0 / 200000, 1e-12);
+    EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+    EXPECT_THROW(gaussmap::read_bytes(text, "t.obj", Format::obj, {1, [](double) { return false; }}),
+                 gaussmap::Cancelled);
+}
+
 TEST(Obj, RealFiles) {
     NEED_DATA();
     support::check_listed(".obj", {"malformed.obj", "issue-140-zero-face-idx.obj"}, {{"notenoughindices.obj", 1}});

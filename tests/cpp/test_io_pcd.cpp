@@ -91,7 +91,7 @@ TEST(Pcd, FieldsOfEveryType) {
 
 TEST(Pcd, PackedColoursInAFloat) {
     const std::string header = "FIELDS x y z rgb\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 1\nPOINTS 1\nDATA ";
-    const Geometry g = read_pcd(header + "ascii\n0 0 0 2.3418054e-38\n");  // 0x00ff0001
+    const Geometry g = read_pcd(header + "ascii\n0 0 0 2.3418053e-38\n");  // 0x00ff0001
     EXPECT_EQ(values_of(g.vertex_properties, "red"), (Values{255}));
     EXPECT_EQ(values_of(g.vertex_properties, "green"), (Values{0}));
     EXPECT_EQ(values_of(g.vertex_properties, "blue"), (Values{1}));

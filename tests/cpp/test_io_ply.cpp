@@ -259,7 +259,7 @@ TEST(PlyRead, MalformedBodies) {
     EXPECT_EQ(error_of(start + three_rows + "-3 0 1 2\n"),
               "t.ply: line 13: the list vertex_indices has the length -3" + mend);
     EXPECT_EQ(error_of(header("ascii", "element vertex 1\n" + xyz + "property uchar q\n") + "0 0 0 256"),
-              "t.ply: line 8: \"256\" is no value for property q of element vertex" + mend);
+              "t.ply: line 9: \"256\" is no value for property q of element vertex" + mend);
     EXPECT_EQ(
         error_of(start + three_rows + "3 0 1 3\n"),
         "t.ply: face 1, corner 3: vertex index 3 (counted from 0) is outside [0, 3); mend the file or write it anew");

@@ -1,0 +1,188 @@
+#include "gaussmap/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "arguments.h"
+#include "camera.h"
+#include "check.h"
+#include "colormap.h"
+#include "gaussmap/neighbors.h"
+#include "gaussmap/normals.h"
+#include "legend.h"
+#include "normalize.h"
+#include "parallel.h"
+#include "rasterizer.h"
+
+namespace gaussmap {
+namespace {
+
+void check(Points vertices, Triangles faces, const std::vector<double>& values, Points normals,
+           const PictureOptions& o) {
+    for (const auto& [name, size] : {std::pair("width", o.width), std::pair("height", o.height)})
+        require(size >= 16 && size <= 16384, "draw", name, size, "be between 16 and 16384");
+    require(o.views == 1 || o.views == 4, "draw", "views", o.views, "be 1 or 4");
+    if (std::isinf(o.low) || std::isinf(o.high) || o.low >= o.high)
+        throw std::invalid_argument("draw: a range from low = " + shown(o.low) + " to high = " + shown(o.high) +
+                                    "; low must be less than high, and both finite (or NaN: automatic)");
+    if (vertices.empty()) throw std::invalid_argument("nothing to draw: there are no vertices");
+    check_count("values", values.size(), vertices.count, "vertices");
+    if (!normals.empty()) check_count("normals", normals.count, vertices.count, "vertices");
+    check_faces(faces, vertices.count);
+}
+
+/// Call visit(point) for every point that is drawn: corners of faces without a non-finite one; points of a cloud.
+template <class Visit>
+void for_drawn(Points vertices, Triangles faces, Visit&& visit) {
+    for (std::size_t f = 0; f < faces.count; ++f) {
+        const Vec3 a = load(vertices[faces[f][0]]), b = load(vertices[faces[f][1]]), c = load(vertices[faces[f][2]]);
+        if (finite(a) && finite(b) && finite(c)) visit(a), visit(b), visit(c);
+    }
+    if (!faces.empty()) return;
+    for (std::size_t v = 0; v < vertices.count; ++v)
+        if (const Vec3 p = load(vertices[v]); finite(p)) visit(p);
+}
+
+struct Box {
+    Vec3 centre, sides;
+    double diagonal() const { return std::hypot(sides.x, sides.y, sides.z); }
+};
+
+Box box_of(Points vertices, Triangles faces) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    Vec3 low = {far, far, far}, high = {-far, -far, -far};
+    for_drawn(vertices, faces, [&](Vec3 p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    });
+    if (low.x > high.x)
+        throw std::invalid_argument(faces.empty() ? "nothing to draw: no vertex is finite"
+                                                  : "nothing to draw: no face has three finite corners");
+    const Box box = {0.5 * low + 0.5 * high, high - low};
+    if (!std::isfinite(box.diagonal()))
+        throw std::invalid_argument("draw: the vertices are too far apart for double precision; scale them down");
+    return box;
+}
+
+Extent extent_of(Points vertices, Triangles faces, const View& view, Vec3 centre) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    Extent e = {far, -far, far, -far};
+    for_drawn(vertices, faces, [&](Vec3 p) {
+        const double x = dot(view.right, p - centre), y = dot(view.up, p - centre);
+        e.left = std::min(e.left, x), e.right = std::max(e.right, x);
+        e.bottom = std::min(e.bottom, y), e.top = std::max(e.top, y);
+    });
+    return e;
+}
+
+/// Value at a fraction of the ranks, linear between them.
+double percentile(std::vector<double>& values, double fraction) {
+    const double rank = fraction * static_cast<double>(values.size() - 1);
+    const auto below = values.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(values.begin(), below, values.end());
+    const double low = *below;
+    if (below + 1 == values.end()) return low;
+    return low + (rank - std::floor(rank)) * (*std::min_element(below + 1, values.end()) - low);
+}
+
+/// Sets picture.low, high and undefined.
+Legend choose_range(Picture& picture, const std::vector<double>& values, double diagonal, const PictureOptions& o) {
+    std::vector<double> defined;
+    for (const double value : values)
+        if (std::isfinite(value)) defined.push_back(value);
+    picture.undefined = values.size() - defined.size();
+    double least = 0, most = 0, low = o.low, high = o.high;
+    if (!defined.empty()) {
+        const auto [first, last] = std::minmax_element(defined.begin(), defined.end());
+        least = *first, most = *last;
+        if (std::isnan(high)) high = percentile(defined, 0.98);
+        if (std::isnan(low)) low = least < 0 ? percentile(defined, 0.02) : 0;
+    }
+    if (std::isnan(low)) low = 0;
+    const double square = diagonal > 0 ? 1 / (diagonal * diagonal) : 1;
+    const bool noise = o.density && std::isnan(o.high) && std::isnan(o.low) && high < 1e-9 * square;
+    if (noise || !(high > low)) {
+        // Nothing varies. A flat object keeps a scale that belongs to its size.
+        if (noise) low = 0;
+        high = low + (o.density && std::isfinite(square) ? square : 1);
+        if (!(high > low)) high = std::nextafter(low, std::numeric_limits<double>::infinity());
+    }
+    picture.low = low, picture.high = high;
+    return {o.label, o.unit, low, high, least < low && !noise, most > high, picture.undefined, values.size()};
+}
+
+/// The discs of a cloud: as far as the fourth neighbour, so that neighbours overlap; not above three times the median,
+/// which keeps stray points small. Points at the position of an earlier one, or not finite, have none.
+std::vector<double> disc_radii(Points points, const Execution& run) {
+    const DistinctPoints distinct = distinct_points(points);
+    const std::size_t n = distinct.source.size();
+    constexpr int k = 4;
+    const Neighbors neighbors = nearest_neighbors(distinct.points, k, run);
+    std::vector<double> reach(n, 0), radii(points.count, 0);
+    for_blocks(n, 1 << 15, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            for (int j = 0; j < k && neighbors[i][j] >= 0; ++j)
+                reach[i] = length(load(&distinct.points[3 * static_cast<std::size_t>(neighbors[i][j])]) -
+                                  load(&distinct.points[3 * i]));
+    });
+    std::vector<double> sorted = reach;
+    const double median = percentile(sorted, 0.5);
+    for (std::size_t i = 0; i < n; ++i)
+        radii[static_cast<std::size_t>(distinct.source[i])] =
+            n == 1 ? 1 : 0.75 * std::clamp(reach[i], 0.3 * median, 3 * median);
+    return radii;
+}
+
+std::vector<Viewport> viewports_of(const PictureOptions& o, int legend) {
+    const int height = o.height - legend;
+    if (o.views == 1) return {{0, 0, o.width, height}};
+    const int w = o.width / 2, h = height / 2;
+    return {{0, 0, w, h}, {w, 0, o.width - w, h}, {0, h, w, height - h}, {w, h, o.width - w, height - h}};
+}
+
+std::vector<double> unit_normals(Points vertices, Triangles faces, Points normals, const Execution& run) {
+    if (normals.empty() && !faces.empty()) return mesh_normals(vertices, faces, NormalWeights::max, run);
+    std::vector<double> unit(normals.xyz, normals.xyz + 3 * normals.count);
+    normalize(unit, run);
+    return unit;
+}
+
+}  // namespace
+
+Picture draw(Points vertices, Triangles faces, const std::vector<double>& values, Points normals,
+             const PictureOptions& options) {
+    check(vertices, faces, values, normals, options);
+    const Box box = box_of(vertices, faces);
+    Picture picture;
+    picture.width = options.width, picture.height = options.height;
+    picture.rgb.assign(3 * static_cast<std::size_t>(options.width) * options.height, 255);
+    const Legend legend = choose_range(picture, values, box.diagonal(), options);
+    const bool labelled = !options.label.empty();
+    const std::vector<Viewport> viewports =
+        viewports_of(options, labelled ? legend_height(options.width, options.height) : 0);
+
+    const std::vector<View> views = views_of(box.sides, options);
+    std::vector<Extent> extents;
+    for (const View& view : views) extents.push_back(extent_of(vertices, faces, view, box.centre));
+    const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
+
+    const std::vector<double> unit = unit_normals(vertices, faces, normals, {options.run.threads, {}});
+    std::vector<double> radii;
+    if (faces.empty()) radii = disc_radii(vertices, part_of(options.run, 0, 0.5));
+    // A single point has no scale: its disc fills a tenth of the picture.
+    if (faces.empty() && box.diagonal() == 0)
+        for (double& radius : radii) radius *= 0.05 * std::min(viewports[0].width, viewports[0].height);
+
+    const Ramp ramp(picture.low, picture.high);
+    const Scene scene = {vertices, faces, values, unit, radii};
+    const double begin = faces.empty() ? 0.5 : 0, share = (1 - begin) / static_cast<double>(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        const double from = begin + share * static_cast<double>(i);
+        render(scene, ramp, projections[i], viewports[i], picture, part_of(options.run, from, from + share));
+    }
+    if (labelled) draw_legend(picture, legend);
+    return picture;
+}
+
+}  // namespace gaussmap
