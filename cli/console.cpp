@@ -125,7 +125,8 @@ void catch_signals() {
     sigaction(SIGINT, &action, nullptr);
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGHUP, &action, nullptr);
-    // A reader that closes the pipe early, or a file beyond the limit, is a failed write told as one, no death by signal.
+    // A reader that closes the pipe early, or a file beyond the limit, is a failed write told as one, no death by
+    // signal.
     action.sa_handler = SIG_IGN;
     sigaction(SIGPIPE, &action, nullptr);
     sigaction(SIGXFSZ, &action, nullptr);

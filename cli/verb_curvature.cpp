@@ -278,11 +278,9 @@ Json report_on(const Options& o, const Plan& plan, const Geometry& geometry, con
     return report;
 }
 
-std::string hint_of_cuts(const Json& report, const Options& o) {
-    const std::size_t n = report["duplicates"].get<std::size_t>();
-    return fmt::format(
-        "{} the position of another: the surface is cut there; join it with: gaussmap convert {} --weld -o OUT",
-        count(n, "vertex repeats", "vertices repeat"), o.input);
+std::string hint_of_cuts(const Json& report) {
+    return fmt::format("{} the position of another: the surface is cut there; gaussmap convert --weld joins it",
+                       count(report["duplicates"].get<std::size_t>(), "vertex repeats", "vertices repeat"));
 }
 
 Table table_of(const Json& report) {
@@ -352,7 +350,7 @@ void curvature(int argc, char** argv) {
 
     std::vector<std::string> notes = geometry.notes;
     notes.insert(notes.end(), plan.notes.begin(), plan.notes.end());
-    if (plan.mesh && report["duplicates"] > 0) notes.push_back(hint_of_cuts(report, o));
+    if (plan.mesh && report["duplicates"] > 0) notes.push_back(hint_of_cuts(report));
     watch.lap();
     if (!o.outputs.paths.empty()) {
         attach(geometry, measured, o, notes);

@@ -19,7 +19,6 @@ const char* name_of(gaussmap::Type type) {
     return names[static_cast<std::size_t>(type)];
 }
 
-/// Of the file's content; by its name where the reader did not say.
 const char* name_of(gaussmap::Format format) {
     constexpr const char* names[] = {"unknown", "ply", "obj", "off", "stl", "xyz", "pcd"};
     return names[static_cast<std::size_t>(format)];
@@ -61,7 +60,8 @@ Json defects(const Inspection& found, bool mesh) {
 Json report_on(const std::string& path, const Geometry& geometry, const Inspection& found) {
     const bool mesh = !geometry.faces.empty();
     Json report = {{"file", path}, {"kind", mesh ? "mesh" : "cloud"}};
-    report["format"] = name_of(geometry.format);
+    const bool told = geometry.format != gaussmap::Format::detect;
+    report["format"] = name_of(told ? geometry.format : gaussmap::format_of(path));
     report["vertices"] = found.vertices;
     report["faces"] = found.faces;
     report["polygons"] = geometry.polygons.empty() ? Json() : Json(geometry.polygons.count());

@@ -43,7 +43,7 @@ Gaze automatic(Vec3 sides) {
     // Flat and lying: a relief or a terrain, seen from the south.
     if (depth == 2 && s[2] < 0.2 * longest) return {{0.25, -0.75, 0.9}, axes[2]};
     const Vec3 front = cross(axes[across], axes[upward]);
-    return {front + 0.5 * axes[across] + 0.4 * axes[upward], axes[upward]};
+    return {front + 0.55 * axes[across] + 0.45 * axes[upward], axes[upward]};
 }
 
 View look(Gaze gaze) {
@@ -84,7 +84,7 @@ std::vector<View> views_of(Vec3 sides, const PictureOptions& options) {
 
 std::vector<Projection> fit(const std::vector<View>& views, const std::vector<Extent>& extents, Vec3 centre,
                             const std::vector<Viewport>& viewports) {
-    constexpr double filled = 0.88;  // of each side of the viewport
+    constexpr double filled = 0.9;  // of each side of the viewport
     double scale = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < views.size(); ++i) {
         scale = std::min(scale, filled * viewports[i].width / (extents[i].right - extents[i].left));

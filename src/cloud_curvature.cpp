@@ -9,6 +9,7 @@
 
 #include "check.h"
 #include "check_cloud.h"
+#include "degenerate.h"
 #include "fan.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
@@ -32,11 +33,14 @@ struct Energy {
 /// Of the triangle (0, a, b) with unit normals at its corners, eq. (3) of docs/method.md:
 /// kappa = ½ Σ cot(α) |dn|² over the edges, cot(α) = (product of the edges that meet in α) / (2 area).
 Energy triangle_energy(Vec3 a, Vec3 b, Vec3 normal, Vec3 normal_a, Vec3 normal_b) {
-    const double twice_area = length(cross(a, b));
-    const double sum = dot(a, b) * squared(normal_b - normal_a) + dot(b, b - a) * squared(normal_a - normal) +
-                       dot(a, a - b) * squared(normal_b - normal);
-    if (!(twice_area > 0) || !std::isfinite(sum)) return {};
-    return {sum / (2 * twice_area), twice_area / 2};
+    const double at_point = dot(a, b), at_a = dot(a, a - b), at_b = dot(b, b - a);
+    const double sum =
+        at_point * squared(normal_b - normal_a) + at_a * squared(normal_b - normal) + at_b * squared(normal_a - normal);
+    const double cross_squared = squared(cross(a, b));
+    if (!std::isfinite(sum) || no_area(cross_squared, at_point + at_a + at_b)) return {};
+    const double twice_area = std::sqrt(cross_squared);
+    // Never negative; rounding could make it so by its last bit.
+    return {std::max(sum, 0.0) / (2 * twice_area), twice_area / 2};
 }
 
 /// Over the fan of a point, in units of the scaled neighbourhood. With `align`, normals that look away from the

@@ -43,8 +43,8 @@ std::array<std::uint8_t, 3> color_at(double value) {
     if (std::isnan(value)) return {150, 150, 150};
     const double t = std::clamp(value, 0.0, 1.0);
     const double middle = 1 - (2 * t - 1) * (2 * t - 1);  // teal cannot be as vivid as the ends are
-    const double chroma = (t < 0.5 ? 0.12 : 0.16) * (1 - middle) + 0.1 * middle;
-    return from_oklch(0.28 + 0.64 * t, chroma, (300 - 195 * t) * std::numbers::pi / 180);
+    const double chroma = (t < 0.5 ? 0.14 : 0.16) * (1 - middle) + 0.1 * middle;
+    return from_oklch(0.37 + 0.56 * t, chroma, (295 - 190 * t) * std::numbers::pi / 180);
 }
 
 float linear_of(std::uint8_t encoded) {

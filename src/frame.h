@@ -9,7 +9,8 @@
 
 namespace gaussmap {
 
-/// a / |a| for any length that is neither zero nor infinite; NaN otherwise.
+/// a / |a| for any length that is neither zero nor infinite; NaN otherwise. A vector along an axis becomes that axis
+/// exactly, so that the normals of a plane z = const agree to the last bit.
 inline Vec3 unit(Vec3 a) {
     const double largest = std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
     if (!finite(a) || largest == 0) {

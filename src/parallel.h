@@ -62,7 +62,7 @@ void for_blocks(std::size_t count, std::size_t grain, const Execution& run, Body
             }
         }
         if (error) std::rethrow_exception(error);
-        if (cancelled) throw Cancelled();
+        if (cancelled || (run.progress && !run.progress(1))) throw Cancelled();
         return;
     }
 #endif

@@ -112,12 +112,12 @@ Legend choose_range(Picture& picture, const std::vector<double>& values, double 
     return {o.label, o.unit, low, high, least < low && !noise, most > high, picture.undefined, values.size()};
 }
 
-/// The discs of a cloud: as far as the fourth neighbour, so that neighbours overlap; not above three times the median,
+/// The discs of a cloud: as far as the sixth neighbour, so that neighbours overlap; not above three times the median,
 /// which keeps stray points small. Points at the position of an earlier one, or not finite, have none.
 std::vector<double> disc_radii(Points points, const Execution& run) {
     const DistinctPoints distinct = distinct_points(points);
     const std::size_t n = distinct.source.size();
-    constexpr int k = 4;
+    constexpr int k = 6;
     const Neighbors neighbors = nearest_neighbors(distinct.points, k, run);
     std::vector<double> reach(n, 0), radii(points.count, 0);
     for_blocks(n, 1 << 15, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -130,7 +130,7 @@ std::vector<double> disc_radii(Points points, const Execution& run) {
     const double median = percentile(sorted, 0.5);
     for (std::size_t i = 0; i < n; ++i)
         radii[static_cast<std::size_t>(distinct.source[i])] =
-            n == 1 ? 1 : 0.75 * std::clamp(reach[i], 0.3 * median, 3 * median);
+            n == 1 ? 1 : 0.7 * std::clamp(reach[i], 0.3 * median, 3 * median);
     return radii;
 }
 

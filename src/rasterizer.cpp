@@ -295,14 +295,15 @@ class Renderer {
         for (int x = 0; x < viewport_.width; ++x, out += 3) {
             float r = 0, g = 0, b = 0;
             bool touched = false;
+            std::array<LinearRgb, samples> colors;
             for (int s = 0; s < samples; ++s) {
-                if (band.row(s, y)[x].item < 0) {
-                    r += 1, g += 1, b += 1;
-                    continue;
-                }
-                const LinearRgb c = shaded(band, s, x, y);
-                r += c.r, g += c.g, b += c.b;
-                touched = true;
+                const std::int32_t item = band.row(s, y)[x].item;
+                // Samples of one pixel on one triangle look alike: one is shaded.
+                int same = 0;
+                while (same < s && band.row(same, y)[x].item != item) ++same;
+                colors[s] = same < s ? colors[same] : item < 0 ? LinearRgb{1, 1, 1} : shaded(band, s, x, y);
+                r += colors[s].r, g += colors[s].g, b += colors[s].b;
+                touched |= item >= 0;
             }
             if (!touched) continue;
             out[0] = encoded_of(r / samples), out[1] = encoded_of(g / samples), out[2] = encoded_of(b / samples);

@@ -11,6 +11,8 @@ import pytest
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = pathlib.Path(os.environ.get("GAUSSMAP", PROJECT / "build/release/gaussmap")).resolve()
 DATA = pathlib.Path(os.environ.get("GAUSSMAP_DATA") or PROJECT / "../shared/data").resolve()
+# A sanitizer makes the program slower, and its memory no measure.
+SANITIZED = PROGRAM.exists() and any(word in PROGRAM.read_bytes() for word in (b"__asan_init", b"__tsan_init"))
 
 
 class Run:

@@ -1,8 +1,11 @@
 """Every way to be wrong: one line, and the right exit code."""
 
 import os
+import resource
+import subprocess
 
 import pytest
+from conftest import SANITIZED
 
 CUBE = b"""OFF
 8 6 0
@@ -196,9 +199,6 @@ def test_folder_without_permission(gaussmap, tmp_path):
 
 def test_a_full_disk_leaves_nothing(program, tmp_path):
     """A limit on the size of files stands for a disk that is full."""
-    import resource
-    import subprocess
-
     done = subprocess.run(
         [program, "shape", "sphere", "--subdivisions", "4", "-o", "out.ply"],
         cwd=tmp_path,
@@ -212,8 +212,6 @@ def test_a_full_disk_leaves_nothing(program, tmp_path):
 
 
 def test_standard_output_that_is_full(program):
-    import subprocess
-
     with open("/dev/full", "wb") as full:
         for command in (["info", "-", "--json"], ["convert", "-", "-o", "-"]):
             done = subprocess.run([program, *command], input=CUBE, stdout=full, stderr=subprocess.PIPE, check=False)
@@ -221,12 +219,8 @@ def test_standard_output_that_is_full(program):
             assert b"No space left on device" in done.stderr and done.stderr.count(b"\n") == 1
 
 
+@pytest.mark.skipif(SANITIZED, reason="a sanitizer reserves more address space than the limit")
 def test_out_of_memory_is_one_line(program, tmp_path):
-    import resource
-    import subprocess
-
-    if "san" in str(program):
-        pytest.skip("a sanitizer reserves more address space than the limit")
     done = subprocess.run(
         [program, "shape", "sphere", "--subdivisions", "11", "-o", "out.ply"],
         cwd=tmp_path,

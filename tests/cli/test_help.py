@@ -1,6 +1,8 @@
 """Help, version, and what is everywhere."""
 
+import os
 import re
+import subprocess
 
 import pytest
 
@@ -67,9 +69,6 @@ def test_version(gaussmap):
 
 @pytest.mark.parametrize("verb", VERBS)
 def test_a_broken_pipe_is_no_crash(program, verb):
-    import os
-    import subprocess
-
     reader, writer = os.pipe()
     os.close(reader)
     done = subprocess.run([program, verb, "--help"], stdout=writer, stderr=subprocess.PIPE, check=False)

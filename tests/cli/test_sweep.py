@@ -6,14 +6,10 @@ import os
 import time
 
 import pytest
-from conftest import DATA, PROGRAM
+from conftest import DATA, SANITIZED
 
 FILES = sorted(p for folder in ("meshes", "clouds", "nasty") for p in (DATA / folder).rglob("*") if p.is_file())
-
-
-def seconds_allowed():
-    """A program built with a sanitizer is slower."""
-    return 60 if PROGRAM.exists() and b"__asan_init" in PROGRAM.read_bytes() else 10
+SECONDS_ALLOWED = 60 if SANITIZED else 10
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +36,7 @@ def summary(verb, report):
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(DATA)))
 def test_file(gaussmap, table, path, verb):
     begin = time.monotonic()
-    run = gaussmap(verb, path, "--json", timeout=seconds_allowed())
+    run = gaussmap(verb, path, "--json", timeout=SECONDS_ALLOWED)
     duration = time.monotonic() - begin
     assert run.code in (0, 3), f"exit {run.code}: {run.stderr[:2000]}"
     if run.code == 0:
@@ -49,7 +45,7 @@ def test_file(gaussmap, table, path, verb):
         assert report["file"] == str(path) and report["vertices"] >= 0
         result = summary(verb, report)
         # Nothing but what the file justifies: the program itself, and some hundred times the bytes of the file.
-        if seconds_allowed() == 10:
+        if not SANITIZED:
             assert report["peak_bytes"] < 50_000_000 + 300 * path.stat().st_size
     else:
         assert run.stdout == b""

@@ -102,6 +102,7 @@ def test_interrupted_while_writing(program, gaussmap, tmp_path):
         process = subprocess.Popen([program, *command], cwd=tmp_path, stderr=subprocess.DEVNULL)
         time.sleep(duration * step / 40)
         process.send_signal(signal.SIGTERM)
-        assert process.wait(timeout=30) in (143, 0)
+        # The very first moment may come before the program has set up anything: then the system ends it.
+        assert process.wait(timeout=30) in (143, 0, -signal.SIGTERM)
         assert os.listdir(tmp_path) == ["s.ply"]
         assert (tmp_path / "s.ply").read_bytes() in (b"old", whole)
