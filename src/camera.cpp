@@ -43,7 +43,7 @@ Gaze automatic(Vec3 sides) {
     // Flat and lying: a relief or a terrain, seen from the south.
     if (depth == 2 && s[2] < 0.2 * longest) return {{0.25, -0.75, 0.9}, axes[2]};
     const Vec3 front = cross(axes[across], axes[upward]);
-    return {front + 0.55 * axes[across] + 0.45 * axes[upward], axes[upward]};
+    return {front + 0.5 * axes[across] + 0.42 * axes[upward], axes[upward]};
 }
 
 View look(Gaze gaze) {

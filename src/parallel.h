@@ -51,7 +51,7 @@ void for_blocks(std::size_t count, std::size_t grain, const Execution& run, Body
             try {
                 body(b, b * grain, bounds(b));
                 const std::size_t finished = done.fetch_add(1, std::memory_order_relaxed) + 1;
-                if (omp_get_thread_num() == 0 && run.progress &&
+                if (omp_get_thread_num() == 0 && finished < blocks && run.progress &&
                     !run.progress(static_cast<double>(finished) / static_cast<double>(blocks))) {
                     cancelled = stop = true;
                 }

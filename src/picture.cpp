@@ -109,7 +109,8 @@ Legend choose_range(Picture& picture, const std::vector<double>& values, double 
         if (!(high > low)) high = std::nextafter(low, std::numeric_limits<double>::infinity());
     }
     picture.low = low, picture.high = high;
-    return {o.label, o.unit, low, high, least < low && !noise, most > high, picture.undefined, values.size()};
+    const double slack = 1e-6 * (high - low);  // a constant value's rounding is not beyond the range
+    return {o.label, o.unit, low, high, least<low - slack, most> high + slack, picture.undefined, values.size()};
 }
 
 /// The discs of a cloud: as far as the sixth neighbour, so that neighbours overlap; not above three times the median,

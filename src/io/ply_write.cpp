@@ -69,7 +69,7 @@ void add_triple(Table& table, const std::array<const char*, 3>& names, const std
         table.columns.push_back({.name = names[c],
                                  .type = is_float(type) ? type : Type::float64,
                                  .stored = Type::float64,
-                                 .data = values.data() + c,
+                                 .data = values.empty() ? nullptr : values.data() + c,
                                  .step = 3 * sizeof(double)});
     }
 }
