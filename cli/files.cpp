@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "report.h"
@@ -73,6 +75,7 @@ std::vector<std::string> lost(const gaussmap::Geometry& geometry, Format format)
 void Outputs::declare(CommandLine& line, bool required) {
     line.group("Output");
     line.outputs(paths, required);
+    if (!geometries) return;
     line.option("--format", format_name, "F", "Format of -o -: ply, obj, off, stl, xyz or pcd (default: ply)")
         ->check(one_of(format_names));
     line.flag("--ascii", ascii, "Text instead of binary, where the format has both (.ply .stl .pcd)");
@@ -93,12 +96,15 @@ void Outputs::check(const CommandLine& line) const {
                 throw Failure(Exit::wrong_usage, "-o - and --json both want standard output; write to a file instead");
             continue;
         }
-        if (format(*path) == Format::detect)
-            throw Failure(Exit::wrong_usage, fmt::format("{}: unknown extension of an output; the known ones are {}",
-                                                         *path, gaussmap::known_extensions()));
+        if (!is_picture(*path) && (!geometries || format(*path) == Format::detect)) {
+            std::string known = geometries ? gaussmap::known_extensions() : "";
+            if (pictures) known += known.empty() ? ".png" : ", .png";
+            throw Failure(Exit::wrong_usage, fmt::format("{}: unknown extension of an output; the known {} {}", *path,
+                                                         geometries ? "ones are" : "one is", known));
+        }
         check_folder(*path);
     }
-    if (line.given("--format") && std::find(paths.begin(), paths.end(), "-") == paths.end())
+    if (geometries && line.given("--format") && std::find(paths.begin(), paths.end(), "-") == paths.end())
         throw Failure(Exit::wrong_usage, "--format is for -o - alone; the extension of a file decides");
 }
 
@@ -110,13 +116,30 @@ void Outputs::check_fit(const gaussmap::Geometry& geometry) const {
                           path + ": STL holds nothing but triangles, and there are none; write .ply");
 }
 
+bool Outputs::is_picture(const std::string& path) const {
+    if (path == "-") return !geometries;
+    std::string end = path.substr(path.size() - std::min<std::size_t>(4, path.size()));
+    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return pictures && end == ".png";
+}
+
+bool Outputs::any_picture() const {
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_picture(path); });
+}
+
+bool Outputs::any_geometry() const {
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return !is_picture(path); });
+}
+
 void Outputs::write(const gaussmap::Geometry& geometry) const {
-    for (const std::string& path : paths) gaussmap::write(path, geometry, {format(path), ascii, false});
+    for (const std::string& path : paths)
+        if (!is_picture(path)) gaussmap::write(path, geometry, {format(path), ascii, false});
 }
 
 std::vector<std::string> Outputs::losses(const gaussmap::Geometry& geometry) const {
     std::vector<std::string> out;
     for (const std::string& path : paths) {
+        if (is_picture(path)) continue;
         const std::vector<std::string> what = lost(geometry, format(path));
         if (!what.empty())
             out.push_back(fmt::format("{} has no place for: {}; .ply has", path == "-" ? "the output" : path,
@@ -136,6 +159,26 @@ bool taken_as_mesh(const std::string& as, const gaussmap::Geometry& geometry, co
     if (as == "mesh" && geometry.faces.empty())
         throw Failure(Exit::bad_input, path + ": holds no faces; leave out --as mesh to take it as a cloud");
     return as != "cloud" && !geometry.faces.empty();
+}
+
+bool has_normals(const gaussmap::Geometry& geometry) {
+    for (std::size_t i = 0; i + 2 < geometry.normals.size(); i += 3) {
+        const double x = geometry.normals[i], y = geometry.normals[i + 1], z = geometry.normals[i + 2];
+        if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && (x != 0 || y != 0 || z != 0)) return true;
+    }
+    return false;
+}
+
+const gaussmap::Property& vertex_property(const gaussmap::Geometry& geometry, const std::string& name,
+                                          const std::string& path, const char* purpose) {
+    if (const gaussmap::Property* property = geometry.vertex_property(name); property && !property->list)
+        return *property;
+    std::vector<std::string> names;
+    for (const gaussmap::Property& p : geometry.vertex_properties)
+        if (!p.list) names.push_back(p.name);
+    std::string hint = did_you_mean(name, names);
+    if (hint.empty()) hint = names.empty() ? "; it has none of one number a vertex" : "; it has " + listed(names);
+    throw Failure(Exit::bad_input, fmt::format("{}: has no vertex property '{}' {}{}", path, name, purpose, hint));
 }
 
 void set_property(std::vector<gaussmap::Property>& properties, gaussmap::Property property) {

@@ -25,6 +25,7 @@ constexpr Verb verbs[] = {
     {"curvature", "IN [-o OUT]…", "total curvature of a mesh or a point cloud", curvature},
     {"normals", "IN -o OUT", "unit normals of a mesh, or of a cloud, oriented", normals},
     {"shape", "NAME -o OUT", "analytic surfaces with exact normals and curvature", shape},
+    {"view", "IN -o OUT.png", "a picture of the curvature, or of another value", view},
     {"convert", "IN -o OUT", "another format; weld, triangulate", convert},
     {"info", "IN", "what a file holds, and what is wrong with it", info},
 };
@@ -36,6 +37,7 @@ std::string help() {
         "  gaussmap curvature bunny.ply -o out.ply --color\n"
         "                                                 and write it, to look at\n"
         "  gaussmap curvature scan.pcd -o scan.ply --json for a script\n"
+        "  gaussmap view bunny.ply -o bunny.png           a picture of it\n"
         "  gaussmap shape torus -o torus.ply              a surface to try it on\n"
         "  gaussmap info broken.stl                       what is in a file\n"
         "\n"

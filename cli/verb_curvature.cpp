@@ -7,6 +7,7 @@
 #include "colormap.h"
 #include "files.h"
 #include "gaussmap/curvature.h"
+#include "pictures.h"
 #include "report.h"
 #include "verbs.h"
 
@@ -36,7 +37,7 @@ struct Plan {
 
 /// What is written, and the report's part that is known after the measurement.
 struct Measured {
-    std::vector<double> density, kappa, face_density;
+    std::vector<double> density, kappa, face_density, normals;
     double seconds_neighbors = 0, seconds_normals = 0, seconds_curvature = 0;
     Json facts;
 };
@@ -54,6 +55,7 @@ constexpr const char* about =
 constexpr const char* examples =
     "gaussmap curvature bunny.ply                       measure and report\n"
     "gaussmap curvature bunny.ply -o out.ply --color    and write it, to look at\n"
+    "gaussmap curvature bunny.ply -o bunny.png          a picture of it\n"
     "gaussmap curvature scan.pcd --k 30 -o scan.ply     a cloud, 30 neighbours\n"
     "gaussmap curvature a.obj -o a.ply -o a.xyz --json  two files, a JSON report\n"
     "gaussmap curvature torus.ply --truth exact_density compare with the truth";
@@ -89,17 +91,10 @@ void declare(CommandLine& line, Options& o) {
     line.group("Report");
     line.option("--truth", o.truth, "PROPERTY",
                 "Compare the densities with this property of the input's vertices, and report the errors");
+    o.outputs.pictures = true;
     o.outputs.declare(line, false);
     line.flag("--color", o.color,
               "Add red, green, blue: dark at density 0, bright from the 98th percentile on, grey where undefined");
-}
-
-bool has_normals(const Geometry& geometry) {
-    for (std::size_t i = 0; i + 2 < geometry.normals.size(); i += 3) {
-        const double x = geometry.normals[i], y = geometry.normals[i + 1], z = geometry.normals[i + 2];
-        if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && (x != 0 || y != 0 || z != 0)) return true;
-    }
-    return false;
 }
 
 /// Options that the other kind alone understands. \throw Failure (wrong usage)
@@ -186,6 +181,7 @@ Measured measure_mesh(const Geometry& geometry, const Plan& plan) {
     out.seconds_normals = result.seconds_normals;
     out.seconds_curvature = result.seconds_curvature;
     out.density = std::move(result.density);
+    out.normals = std::move(result.normals);
     out.kappa = std::move(result.kappa);
     out.face_density = std::move(result.face_density);
     return out;
@@ -203,20 +199,8 @@ Measured measure_cloud(const Geometry& geometry, const Plan& plan) {
     out.seconds_normals = result.seconds_normals;
     out.seconds_curvature = result.seconds_curvature;
     out.density = std::move(result.density);
+    out.normals = std::move(result.normals);
     return out;
-}
-
-/// The property to compare with. \throw Failure (bad input) where there is none such.
-std::vector<double> truth_of(const Geometry& geometry, const Options& o) {
-    if (const Property* property = geometry.vertex_property(o.truth); property && !property->list)
-        return property->as_double();
-    std::vector<std::string> names;
-    for (const Property& p : geometry.vertex_properties)
-        if (!p.list) names.push_back(p.name);
-    std::string hint = did_you_mean(o.truth, names);
-    if (hint.empty()) hint = names.empty() ? "; it has none of one number a vertex" : "; it has " + listed(names);
-    throw Failure(Exit::bad_input,
-                  fmt::format("{}: has no vertex property '{}' to compare with{}", o.input, o.truth, hint));
 }
 
 /// Errors of the densities where both they and the truth are defined.
@@ -338,7 +322,9 @@ void curvature(int argc, char** argv) {
     const double seconds_read = watch.lap();
     Plan plan = make_plan(o, line, geometry);
     o.outputs.check_fit(geometry);
-    const std::vector<double> truth = o.truth.empty() ? std::vector<double>() : truth_of(geometry, o);
+    const std::vector<double> truth = o.truth.empty()
+                                          ? std::vector<double>()
+                                          : vertex_property(geometry, o.truth, o.input, "to compare with").as_double();
 
     const Measured measured = concerning(o.input, [&] {
         Progress progress("measuring curvature", line.common.quiet);
@@ -352,7 +338,11 @@ void curvature(int argc, char** argv) {
     notes.insert(notes.end(), plan.notes.begin(), plan.notes.end());
     if (plan.mesh && report["duplicates"] > 0) notes.push_back(hint_of_cuts(report));
     watch.lap();
-    if (!o.outputs.paths.empty()) {
+    if (o.outputs.any_picture())
+        concerning(o.input, [&] {
+            draw_pictures(o.outputs, geometry, plan.mesh, measured.density, measured.normals, {}, line.common);
+        });
+    if (o.outputs.any_geometry()) {
         attach(geometry, measured, o, notes);
         o.outputs.write(geometry);
         for (const std::string& loss : o.outputs.losses(geometry)) notes.push_back(loss);

@@ -7,6 +7,7 @@
 
 #include "files.h"
 #include "gaussmap/surfaces.h"
+#include "pictures.h"
 #include "report.h"
 #include "verbs.h"
 
@@ -22,6 +23,8 @@ struct Values {
 
     double operator[](const char* name) const { return numbers.at(name); }
     int whole(const char* name) const { return static_cast<int>(numbers.at(name)); }
+    int around() const { return whole("around"); }
+    int across() const { return whole("across"); }
 };
 
 struct Shape {
@@ -43,20 +46,18 @@ const std::vector<Shape>& shapes() {
         {"torus",
          "of revolution about z",
          {{"major", 1}, {"minor", 0.5}, {"around", 36}, {"across", 36}},
-         [](const V& v, const O& o) { return torus(v["major"], v["minor"], v.whole("around"), v.whole("across"), o); }},
+         [](const V& v, const O& o) { return torus(v["major"], v["minor"], v.around(), v.across(), o); }},
         {"knot",
          "tube around a torus knot",
          {{"p", 2}, {"q", 3}, {"radius", 0.25}, {"major", 2}, {"minor", 1}, {"around", 400}, {"across", 40}},
          [](const V& v, const O& o) {
-             return torus_knot(v.whole("p"), v.whole("q"), v["major"], v["minor"], v["radius"], v.whole("around"),
-                               v.whole("across"), o);
+             return torus_knot(v.whole("p"), v.whole("q"), v["major"], v["minor"], v["radius"], v.around(), v.across(),
+                               o);
          }},
         {"figure-eight",
          "tube around the figure-eight knot",
          {{"radius", 0.25}, {"scale", 1}, {"around", 400}, {"across", 40}},
-         [](const V& v, const O& o) {
-             return figure_eight_knot(v["scale"], v["radius"], v.whole("around"), v.whole("across"), o);
-         }},
+         [](const V& v, const O& o) { return figure_eight_knot(v["scale"], v["radius"], v.around(), v.across(), o); }},
         {"ellipsoid",
          "a stretched sphere",
          {{"a", 1}, {"b", 0.8}, {"c", 0.6}, {"subdivisions", 5}},
@@ -70,25 +71,20 @@ const std::vector<Shape>& shapes() {
         {"catenoid",
          "a minimal surface, open; radius is its neck's",
          {{"radius", 1}, {"height", 2}, {"around", 72}, {"across", 36}},
-         [](const V& v, const O& o) {
-             return catenoid(v["radius"], v["height"], v.whole("around"), v.whole("across"), o);
-         }},
+         [](const V& v, const O& o) { return catenoid(v["radius"], v["height"], v.around(), v.across(), o); }},
         {"cylinder",
          "about z, open",
          {{"radius", 1}, {"height", 2}, {"around", 72}, {"across", 36}},
-         [](const V& v, const O& o) {
-             return cylinder(v["radius"], v["height"], v.whole("around"), v.whole("across"), o);
-         }},
+         [](const V& v, const O& o) { return cylinder(v["radius"], v["height"], v.around(), v.across(), o); }},
         {"plane",
          "a rectangle",
          {{"width", 1}, {"depth", 1}, {"around", 36}, {"across", 36}},
-         [](const V& v, const O& o) { return plane(v["width"], v["depth"], v.whole("around"), v.whole("across"), o); }},
+         [](const V& v, const O& o) { return plane(v["width"], v["depth"], v.around(), v.across(), o); }},
         {"waves",
          "an egg-box of cosines over a rectangle",
          {{"width", 1}, {"depth", 1}, {"amplitude", 0.05}, {"wavelength", 0.5}, {"around", 100}, {"across", 100}},
          [](const V& v, const O& o) {
-             return waves(v["width"], v["depth"], v["amplitude"], v["wavelength"], v.whole("around"), v.whole("across"),
-                          o);
+             return waves(v["width"], v["depth"], v["amplitude"], v["wavelength"], v.around(), v.across(), o);
          }},
     };
     return table;
@@ -241,6 +237,7 @@ void declare(CommandLine& line, Options& o) {
         ->check(number_of_at_least_zero());
     line.option("--seed", line.common.seed, "N", "Of jitter and noise; the same seed makes the same file (default: 0)")
         ->check(whole_number(0, INT64_MAX));
+    o.outputs.pictures = true;
     o.outputs.declare(line, true);
 }
 
@@ -309,6 +306,9 @@ void shape(int argc, char** argv) {
     const gaussmap::Geometry geometry = geometry_of(make(chosen, values, o.surface));
     const double making = watch.lap();
     o.outputs.write(geometry);
+    if (o.outputs.any_picture())
+        draw_pictures(o.outputs, geometry, true, geometry.vertex_property("exact_density")->as_double(),
+                      geometry.normals, {}, line.common);
 
     Json report = {{"name", o.name}, {"vertices", geometry.vertex_count()}, {"faces", geometry.face_count()}};
     report["parameters"] = parameters(chosen, values, o.surface);

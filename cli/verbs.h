@@ -8,5 +8,6 @@ void normals(int argc, char** argv);
 void shape(int argc, char** argv);
 void convert(int argc, char** argv);
 void info(int argc, char** argv);
+void view(int argc, char** argv);
 
 }  // namespace cli

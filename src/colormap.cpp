@@ -40,7 +40,7 @@ LinearRgb linear_color(double value) {
 }  // namespace
 
 std::array<std::uint8_t, 3> color_at(double value) {
-    if (std::isnan(value)) return {150, 150, 150};
+    if (std::isnan(value)) return {128, 128, 128};
     const double t = std::clamp(value, 0.0, 1.0);
     const double middle = 1 - (2 * t - 1) * (2 * t - 1);  // teal cannot be as vivid as the ends are
     const double chroma = (t < 0.5 ? 0.14 : 0.16) * (1 - middle) + 0.1 * middle;

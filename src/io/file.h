@@ -19,7 +19,7 @@ class FileBytes {
 
   private:
     std::string_view bytes_;
-    std::string read_;        // holds the bytes that are not mapped
+    std::string read_;  // holds the bytes that are not mapped
     void* mapped_ = nullptr;
 };
 

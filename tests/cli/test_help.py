@@ -6,12 +6,13 @@ import subprocess
 
 import pytest
 
-VERBS = ["curvature", "normals", "shape", "convert", "info"]
+VERBS = ["curvature", "normals", "shape", "view", "convert", "info"]
 OPTIONS = {
     "curvature": "--as --normals --estimator --k --degree --orient --truth --color --output --format --ascii",
     "normals": "--as --method --k --degree --orient --output --format --ascii",
     "shape": "--subdivisions --radius --major --minor --grid --p --q --scale --axes --amplitude --frequency "
     "--wavelength --width --depth --height --jitter --noise --output --format --ascii",
+    "view": "--field --as --range --size --views --from --up --output",
     "convert": "--weld --triangulate --output --format --ascii",
     "info": "",
 }

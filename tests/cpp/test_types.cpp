@@ -106,7 +106,7 @@ TEST_P(ForBlocks, ReportProgressFromTheCallersThread) {
     };
     for_blocks(64, 1, reporting, [](std::size_t, std::size_t, std::size_t) {});
     EXPECT_EQ(last, 1);
-    if (GetParam() == 1) EXPECT_EQ(calls, 64);
+    EXPECT_TRUE(GetParam() > 1 || calls == 64) << calls;
 }
 
 TEST_P(ForBlocks, ThrowCancelledWhenProgressSaysNo) {

@@ -1,0 +1,156 @@
+"""Pictures: view, and -o picture.png of curvature and shape."""
+
+import struct
+import zlib
+
+import pytest
+
+PLANE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
+
+
+def decode(content):
+    """(width, height, rows of bytes) of an 8-bit RGB PNG, independent of what wrote it."""
+    assert content[:8] == b"\x89PNG\r\n\x1a\n"
+    at, data, header = 8, b"", None
+    while at < len(content):
+        (length,) = struct.unpack_from(">I", content, at)
+        kind, body = content[at + 4 : at + 8], content[at + 8 : at + 8 + length]
+        assert zlib.crc32(kind + body) == struct.unpack_from(">I", content, at + 8 + length)[0]
+        header = struct.unpack(">IIBBBBB", body) if kind == b"IHDR" else header
+        data += body if kind == b"IDAT" else b""
+        at += 12 + length
+    width, height, *rest = header
+    assert rest == [8, 2, 0, 0, 0]
+    raw, rows, above, stride = zlib.decompress(data), [], bytes(3 * width), 3 * width + 1
+    for y in range(height):
+        kind, row = raw[y * stride], bytearray(raw[y * stride + 1 : (y + 1) * stride])
+        for i in range(len(row)):
+            left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+            up = above[i]
+            estimate = left + up - corner
+            nearest = min((left, up, corner), key=lambda v: abs(estimate - v))
+            row[i] = (row[i] + (0, left, up, (left + up) // 2, nearest)[kind]) & 255
+        rows.append(bytes(row))
+        above = row
+    return width, height, rows
+
+
+def picture(path):
+    return decode(path.read_bytes())
+
+
+def colours(rows):
+    return {row[i : i + 3] for row in rows for i in range(0, len(row), 3)}
+
+
+@pytest.fixture(autouse=True)
+def files(tmp_path, gaussmap):
+    assert gaussmap("shape", "torus", "-o", "t.ply").code == 0
+    (tmp_path / "plane.off").write_bytes(PLANE)
+
+
+def test_a_mesh(gaussmap, tmp_path):
+    report = gaussmap("view", "t.ply", "-o", "t.png", "--size", "320x240", "--json").json
+    assert (report["kind"], report["field"], report["width"], report["height"]) == ("mesh", "total curvature", 320, 240)
+    assert report["low"] == 0 and 6 < report["high"] < 9 and report["undefined"] == 0
+    assert report["outputs"] == ["t.png"]
+    width, height, rows = picture(tmp_path / "t.png")
+    assert (width, height) == (320, 240)
+    assert len(colours(rows)) > 500
+    assert rows[0] == rows[-1] == b"\xff" * (3 * 320), "an empty border"
+
+
+def test_the_default_size(gaussmap, tmp_path):
+    assert gaussmap("view", "t.ply", "-o", "t.png").code == 0
+    assert struct.unpack(">II", (tmp_path / "t.png").read_bytes()[16:24]) == (1600, 1200)
+
+
+@pytest.mark.parametrize("kind", ["mesh", "cloud"])
+def test_same_bytes_for_any_number_of_threads(gaussmap, tmp_path, kind):
+    for threads in (1, 2, 7):
+        options = ["--as", kind, "--size", "400x300", "--views", "4", "--threads", threads, "--quiet"]
+        assert gaussmap("view", "t.ply", "-o", f"{threads}.png", *options).code == 0
+    first = (tmp_path / "1.png").read_bytes()
+    assert all((tmp_path / f"{t}.png").read_bytes() == first for t in (2, 7))
+
+
+def test_a_field_and_its_range(gaussmap):
+    report = gaussmap("view", "t.ply", "--field", "k2", "-o", "a.png", "--size", "64x64", "--json").json
+    assert report["field"] == "k2" and report["low"] < 0
+    options = ["--range", "-1.5,2", "--size", "64x64", "--json"]
+    report = gaussmap("view", "t.ply", "--field", "k2", "-o", "a.png", *options).json
+    assert (report["low"], report["high"]) == (-1.5, 2)
+
+
+def test_the_direction_changes_the_picture(gaussmap, tmp_path):
+    for name, options in {"auto": [], "top": ["--from", "0,0,1"], "side": ["--from", "0,-1,0", "--up", "0,0,1"]}.items():
+        assert gaussmap("view", "t.ply", "-o", f"{name}.png", "--size", "99x99", *options).code == 0
+    top = picture(tmp_path / "top.png")[2]
+    assert top[49][3 * 49 : 3 * 50] == b"\xff\xff\xff", "through the hole"
+    assert picture(tmp_path / "side.png")[2][49][3 * 49 : 3 * 50] != b"\xff\xff\xff"
+    assert len({(tmp_path / f"{n}.png").read_bytes() for n in ("auto", "top", "side")}) == 3
+
+
+def test_a_plane_looks_like_a_plane(gaussmap, tmp_path):
+    options = ["--from", "0,0,1", "--size", "100x100"]
+    report = gaussmap("view", "plane.off", "-o", "p.png", *options, "--json").json
+    assert report["low"] == 0
+    inside = {row[i : i + 3] for row in picture(tmp_path / "p.png")[2][8:92] for i in range(24, 276, 3)}
+    assert len(inside) == 1
+
+
+def test_several_outputs_of_one_run(gaussmap, tmp_path):
+    assert gaussmap("curvature", "t.ply", "-o", "a.ply", "-o", "a.png", "-o", "b.PNG", "--quiet").code == 0
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.PNG").read_bytes()
+    assert (tmp_path / "a.ply").read_bytes().startswith(b"ply")
+    assert gaussmap("view", "t.ply", "-o", "view.png").code == 0
+    assert (tmp_path / "view.png").read_bytes() == (tmp_path / "a.png").read_bytes()
+    assert gaussmap("shape", "knot", "-o", "knot.png", "-o", "knot.stl").code == 0
+    assert picture(tmp_path / "knot.png")[:2] == (1600, 1200)
+
+
+def test_a_picture_alone_writes_no_geometry(gaussmap, tmp_path):
+    run = gaussmap("curvature", "t.ply", "-o", "only.png", "--json")
+    assert run.json["notes"] == [] and run.stderr == ""
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["only.png", "plane.off", "t.ply"]
+
+
+def test_standard_output(gaussmap):
+    run = gaussmap("view", "-", "-o", "-", "--size", "50x40", stdin=PLANE)
+    assert run.code == 0 and decode(run.stdout)[:2] == (50, 40)
+
+
+USAGE = [
+    ("view t.ply", "view: -o OUT is missing; write: gaussmap view IN -o OUT.png… [options]"),
+    ("view t.ply -o t.html", "t.html: unknown extension of an output; the known one is .png"),
+    ("view t.ply -o t.ply", "t.ply: unknown extension of an output; the known one is .png"),
+    ("view t.ply -o t.png --views 3", "--views: '3' is not 1 or 4"),
+    ("view t.ply -o t.png --size 800", "--size: '800' is not a size as in 1600x1200, each 16 to 16384"),
+    ("view t.ply -o t.png --size 8x800", "--size: '8x800' is not a size as in 1600x1200, each 16 to 16384"),
+    ("view t.ply -o t.png --from 1,2", "--from: '1,2' is not 3 numbers as in 1,-2,1"),
+    ("view t.ply -o t.png --from 0,0,0", "--from: '0,0,0' is no direction; one number must not be 0"),
+    ("view t.ply -o t.png --from 0,1,0 --up 0,2,0", "--up: '0,2,0' is parallel to --from; give another"),
+    ("view t.ply -o t.png --range 2,1", "--range: '2,1' is empty; the first must be less"),
+    ("view t.ply -o t.png --range x", "--range: 'x' is not 2 numbers as in 0,100"),
+    ("convert t.ply -o t.png", None),
+]
+
+
+@pytest.mark.parametrize("arguments, line", USAGE)
+def test_wrong_usage(gaussmap, tmp_path, arguments, line):
+    run = gaussmap(*arguments.split())
+    if line:
+        run.fails(2, line)
+    else:
+        assert run.code == 2 and ".png" not in run.stderr.split("known ones are")[1]
+    assert not list(tmp_path.glob("*.png"))
+
+
+def test_bad_input(gaussmap, tmp_path):
+    run = gaussmap("view", "t.ply", "--field", "k3", "-o", "t.png")
+    run.fails(3, "t.ply: has no vertex property 'k3' to draw; did you mean 'k1'?")
+    (tmp_path / "empty.off").write_bytes(b"OFF\n0 0 0\n")
+    assert gaussmap("view", "empty.off", "-o", "t.png").code == 3
+    (tmp_path / "nan.xyz").write_bytes(b"nan 0 0\n")
+    assert gaussmap("view", "nan.xyz", "-o", "t.png").code == 3
+    assert not (tmp_path / "t.png").exists()
