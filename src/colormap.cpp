@@ -64,7 +64,7 @@ std::uint8_t encoded_of(float linear) {
         for (int i = 0; i <= steps; ++i) t[i] = byte_of(i / static_cast<double>(steps));
         return t;
     }();
-    return table[static_cast<std::size_t>(std::clamp(linear, 0.0F, 1.0F) * steps + 0.5F)];
+    return table[static_cast<std::size_t>(std::lrint(std::clamp(linear, 0.0F, 1.0F) * steps))];
 }
 
 Ramp::Ramp(double low, double high)

@@ -1,6 +1,7 @@
 // Colours in linear light, where they may be added and shaded.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -26,7 +27,7 @@ class Ramp {
         // Written so that NaN takes the first branch.
         return !(t > 0) ? colors_.front()
                : t >= 1 ? colors_.back()
-                        : colors_[static_cast<std::size_t>(t * steps + 0.5)];
+                        : colors_[static_cast<std::size_t>(std::lrint(t * steps))];
     }
     const LinearRgb& undefined() const { return undefined_; }
 

@@ -165,6 +165,7 @@ Picture draw(Points vertices, Triangles faces, const std::vector<double>& values
 
     const std::vector<View> views = views_of(box.sides, options);
     std::vector<Extent> extents;
+    extents.reserve(views.size());
     for (const View& view : views) extents.push_back(extent_of(vertices, faces, view, box.centre));
     const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
 
