@@ -23,28 +23,17 @@ bool lower_owners(const std::int32_t* first, const std::int32_t* last, std::uint
     return lowered;
 }
 
-/// Lower owner[v] to the smallest chunk that touches v. Two threads may race for one vertex and the higher chunk win,
-/// so passes are made until one finds nothing to lower. Whatever wins is lower than what stood there before the pass:
-/// it ends.
-void lower_owners(Triangles faces, FaceChunks& chunks, const Execution& run) {
-    const std::size_t last = chunks.count() - 1;
-    const std::size_t touched = chunks.begin[last];  // the last chunk owns by default
-    std::uint8_t* const owner = chunks.owner.data();
-    std::atomic<bool> again{true};
-    // With two chunks only chunk 0 writes: no race, one pass.
-    while (again.exchange(false)) {
-        for_blocks(touched, block, run, [&](std::size_t, std::size_t begin, std::size_t end) {
-            std::uint8_t chunk = 0;
-            bool lowered = false;
-            while (begin < end) {
-                while (begin >= chunks.begin[chunk + 1]) ++chunk;
-                const std::size_t stop = std::min(end, chunks.begin[chunk + 1]);
-                lowered |= lower_owners(faces.abc + 3 * begin, faces.abc + 3 * stop, chunk, owner);
-                begin = stop;
-            }
-            if (lowered && last > 1) again.store(true, std::memory_order_relaxed);
-        });
+/// Lower the owners of the vertices of faces [begin, end), which may lie in several chunks; whether any was higher.
+bool lower_owners(Triangles faces, FaceChunks& chunks, std::size_t begin, std::size_t end) {
+    bool lowered = false;
+    std::uint8_t chunk = 0;
+    while (begin < end) {
+        while (begin >= chunks.begin[chunk + 1]) ++chunk;
+        const std::size_t stop = std::min(end, chunks.begin[chunk + 1]);
+        lowered |= lower_owners(faces.abc + 3 * begin, faces.abc + 3 * stop, chunk, chunks.owner.data());
+        begin = stop;
     }
+    return lowered;
 }
 
 }  // namespace
@@ -54,15 +43,23 @@ FaceChunks chunk_faces(Triangles faces, std::size_t vertices, const Execution& r
     const std::size_t count = std::max<std::size_t>(1, std::min(most, faces.count / smallest_chunk));
     FaceChunks chunks;
     for (std::size_t c = 0; c <= count; ++c) chunks.begin.push_back(faces.count * c / count);
-    const Execution quiet{run.threads, {}};
-    std::atomic<bool> bad{false};
-    for_blocks(faces.count, block, quiet, [&](std::size_t, std::size_t begin, std::size_t end) {
-        if (!faces_within(faces, begin, end, vertices)) bad = true;
-    });
-    if (bad) check_faces(faces, vertices);
-    if (count > 1) {
-        chunks.owner.assign(vertices, static_cast<std::uint8_t>(count - 1));
-        lower_owners(faces, chunks, quiet);
+    if (count == 1) return chunks;
+    const std::size_t last = count - 1;  // the last chunk owns what no other touches
+    chunks.owner.assign(vertices, static_cast<std::uint8_t>(last));
+
+    // Faces are checked and, while they are in the cache, their vertices claimed. Two threads may race for one vertex
+    // and the higher chunk win, so with three chunks or more passes are made until one finds nothing to lower. Whatever
+    // wins is lower than what stood there before the pass: it ends.
+    std::atomic<bool> bad{false}, again{true};
+    while (again.exchange(false)) {
+        for_blocks(faces.count, block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
+            if (!faces_within(faces, begin, end, vertices)) {
+                bad = true;
+            } else if (lower_owners(faces, chunks, begin, std::min(end, chunks.begin[last])) && last > 1) {
+                again.store(true, std::memory_order_relaxed);
+            }
+        });
+        if (bad) check_faces(faces, vertices);
     }
     return chunks;
 }

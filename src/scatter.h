@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "check.h"
 #include "first_touch.h"
 #include "parallel.h"
 
@@ -18,7 +19,7 @@ std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const E
         std::int32_t vertex;
         double value[N];
     };
-    constexpr std::size_t progress_stretch = 1 << 18;
+    constexpr std::size_t stretch = 1 << 14;
     const FaceChunks chunks = chunk_faces(faces, vertices, run);
     std::vector<double> sums(N * vertices, 0.0);
     std::vector<std::vector<Late>> late(chunks.count());
@@ -42,8 +43,10 @@ std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const E
         }
     };
     if (alone) {
-        for_blocks(faces.count, progress_stretch, {1, run.progress},
-                   [&](std::size_t, std::size_t begin, std::size_t end) { work(0, begin, end); });
+        for_blocks(faces.count, stretch, {1, run.progress}, [&](std::size_t, std::size_t begin, std::size_t end) {
+            if (!faces_within(faces, begin, end, vertices)) check_faces(faces, vertices);
+            work(0, begin, end);
+        });
     } else {
         for_blocks(chunks.count(), 1, run,
                    [&](std::size_t c, std::size_t, std::size_t) { work(c, chunks.begin[c], chunks.begin[c + 1]); });

@@ -5,18 +5,26 @@
 
 namespace {
 
-using Vector = Eigen::Vector3d;
+// The way it reads in a textbook, and in most programs: small dynamic matrices, a sparse one from triplets.
+using Matrix = Eigen::MatrixXd;
 
-double cotangent(const Vector& apex, const Vector& p, const Vector& q) {
-    return (p - apex).dot(q - apex) / (p - apex).cross(q - apex).norm();
+double cotangent(const Eigen::VectorXd& e, const Eigen::VectorXd& f, double twice_area) {
+    return e.dot(f) / twice_area;
 }
 
-/// The cotangent matrix of one triangle, rows and columns in the order of its corners.
-Eigen::SparseMatrix<double> cotangent_matrix(const Eigen::Matrix3d& corners) {
+double double_area(const Matrix& corners) {
+    const Eigen::Vector3d e = corners.row(1) - corners.row(0), f = corners.row(2) - corners.row(0);
+    return e.cross(f).norm();
+}
+
+/// The cotangent matrix of one triangle, a corner a row.
+Eigen::SparseMatrix<double> cotangent_matrix(const Matrix& corners) {
+    const double twice_area = double_area(corners);
     std::vector<Eigen::Triplet<double>> entries;
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        const double half = 0.5 * cotangent(corners.col(k), corners.col(i), corners.col(j));
+        const double half =
+            0.5 * cotangent(corners.row(i) - corners.row(k), corners.row(j) - corners.row(k), twice_area);
         entries.emplace_back(i, j, -half);
         entries.emplace_back(j, i, -half);
         entries.emplace_back(i, i, half);
@@ -32,13 +40,14 @@ Eigen::SparseMatrix<double> cotangent_matrix(const Eigen::Matrix3d& corners) {
 std::vector<double> textbook_density(gaussmap::Points vertices, gaussmap::Triangles faces, gaussmap::Points normals) {
     std::vector<double> kappa(vertices.count), area(vertices.count);
     for (std::size_t f = 0; f < faces.count; ++f) {
-        Eigen::Matrix3d corners, n;
+        Matrix corners(3, 3), n(3, 3);
         for (int c = 0; c < 3; ++c) {
-            corners.col(c) = Eigen::Map<const Vector>(vertices[faces[f][c]]);
-            n.col(c) = Eigen::Map<const Vector>(normals[faces[f][c]]);
+            corners.row(c) = Eigen::Map<const Eigen::RowVector3d>(vertices[faces[f][c]]);
+            n.row(c) = Eigen::Map<const Eigen::RowVector3d>(normals[faces[f][c]]);
         }
-        const Eigen::Matrix3d energy = n * cotangent_matrix(corners) * n.transpose();
-        const double a = 0.5 * (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm();
+        const Eigen::SparseMatrix<double> s = cotangent_matrix(corners);
+        const Matrix energy = n.transpose() * s * n;
+        const double a = 0.5 * double_area(corners);
         for (int c = 0; c < 3; ++c) kappa[faces[f][c]] += energy.trace(), area[faces[f][c]] += a;
     }
     for (std::size_t v = 0; v < kappa.size(); ++v) kappa[v] /= area[v];

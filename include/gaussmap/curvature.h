@@ -55,11 +55,12 @@ struct MeshCurvature {
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals = {},
                              const MeshCurvatureOptions& options = {});
 
-/// The fused pass alone: density of every vertex from given *unit* normals, nothing else made.
-/// `density` receives one value a vertex (NaN where undefined), `area` the area of the vertex's
-/// faces added up (0 where undefined). Bits equal to `mesh_curvature(...).density`.
-/// \throw std::invalid_argument as `mesh_curvature`.
-void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density, double* area,
+/// The fused pass alone: density of every vertex from given *unit* normals, nothing else made and nothing allocated
+/// that grows with the mesh on one thread (on more, a byte a vertex).
+/// \param density_and_area  room for two values a vertex: its density (NaN where undefined) and the area of its faces
+///        added up (0 where undefined). Bits of the densities equal to `mesh_curvature(...).density`.
+/// \throw std::invalid_argument as `mesh_curvature`; the contents of density_and_area are then unspecified.
+void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density_and_area,
                     const Execution& run = {});
 
 struct CloudCurvatureOptions {
