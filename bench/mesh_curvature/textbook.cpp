@@ -1,37 +1,60 @@
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "peers.h"
 
 namespace {
 
-// The way it reads in a textbook, and in most programs: small dynamic matrices, a sparse one from triplets.
+// The way it reads in a textbook, and in libraries that serve meshes of any size: dynamic matrices throughout,
+// cotangents from edge lengths, a sparse matrix from triplets; here called once a triangle.
 using Matrix = Eigen::MatrixXd;
 
-double cotangent(const Eigen::VectorXd& e, const Eigen::VectorXd& f, double twice_area) {
-    return e.dot(f) / twice_area;
+/// Edge lengths, entry k opposite corner k.
+Matrix edge_lengths(const Matrix& v, const Eigen::MatrixXi& f) {
+    Matrix lengths(f.rows(), 3);
+    for (int t = 0; t < f.rows(); ++t)
+        for (int k = 0; k < 3; ++k) lengths(t, k) = (v.row(f(t, (k + 1) % 3)) - v.row(f(t, (k + 2) % 3))).norm();
+    return lengths;
 }
 
-double double_area(const Matrix& corners) {
-    const Eigen::Vector3d e = corners.row(1) - corners.row(0), f = corners.row(2) - corners.row(0);
-    return e.cross(f).norm();
-}
-
-/// The cotangent matrix of one triangle, a corner a row.
-Eigen::SparseMatrix<double> cotangent_matrix(const Matrix& corners) {
-    const double twice_area = double_area(corners);
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int k = 0; k < 3; ++k) {
-        const int i = (k + 1) % 3, j = (k + 2) % 3;
-        const double half =
-            0.5 * cotangent(corners.row(i) - corners.row(k), corners.row(j) - corners.row(k), twice_area);
-        entries.emplace_back(i, j, -half);
-        entries.emplace_back(j, i, -half);
-        entries.emplace_back(i, i, half);
-        entries.emplace_back(j, j, half);
+/// Twice the areas by Heron's formula, stable for needles with the lengths sorted (Kahan).
+Matrix double_areas(const Matrix& lengths) {
+    Matrix areas(lengths.rows(), 1);
+    for (int t = 0; t < lengths.rows(); ++t) {
+        Eigen::VectorXd l = lengths.row(t);
+        std::sort(l.data(), l.data() + 3, std::greater<>());
+        areas(t) = 0.5 * std::sqrt((l(0) + (l(1) + l(2))) * (l(2) - (l(0) - l(1))) * (l(2) + (l(0) - l(1))) *
+                                   (l(0) + (l(1) - l(2))));
     }
-    Eigen::SparseMatrix<double> s(3, 3);
-    s.setFromTriplets(entries.begin(), entries.end());
+    return areas;
+}
+
+/// Half the cotangents, entry k of corner k.
+Matrix cotangent_entries(const Matrix& lengths, const Matrix& areas) {
+    const Matrix squares = lengths.array().square();
+    Matrix entries(lengths.rows(), 3);
+    for (int t = 0; t < lengths.rows(); ++t)
+        for (int k = 0; k < 3; ++k)
+            entries(t, k) = (squares(t, (k + 1) % 3) + squares(t, (k + 2) % 3) - squares(t, k)) / (4 * areas(t));
+    return entries;
+}
+
+Eigen::SparseMatrix<double> cotangent_matrix(const Matrix& v, const Eigen::MatrixXi& f, const Matrix& entries) {
+    std::vector<Eigen::Triplet<double>> triplets;
+    triplets.reserve(static_cast<std::size_t>(12 * f.rows()));
+    for (int t = 0; t < f.rows(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            const int i = f(t, (k + 1) % 3), j = f(t, (k + 2) % 3);
+            triplets.emplace_back(i, j, -entries(t, k));
+            triplets.emplace_back(j, i, -entries(t, k));
+            triplets.emplace_back(i, i, entries(t, k));
+            triplets.emplace_back(j, j, entries(t, k));
+        }
+    Eigen::SparseMatrix<double> s(v.rows(), v.rows());
+    s.setFromTriplets(triplets.begin(), triplets.end());
     return s;
 }
 
@@ -39,16 +62,19 @@ Eigen::SparseMatrix<double> cotangent_matrix(const Matrix& corners) {
 
 std::vector<double> textbook_density(gaussmap::Points vertices, gaussmap::Triangles faces, gaussmap::Points normals) {
     std::vector<double> kappa(vertices.count), area(vertices.count);
+    Eigen::MatrixXi corner_indices(1, 3);
+    corner_indices << 0, 1, 2;
     for (std::size_t f = 0; f < faces.count; ++f) {
         Matrix corners(3, 3), n(3, 3);
         for (int c = 0; c < 3; ++c) {
             corners.row(c) = Eigen::Map<const Eigen::RowVector3d>(vertices[faces[f][c]]);
             n.row(c) = Eigen::Map<const Eigen::RowVector3d>(normals[faces[f][c]]);
         }
-        const Eigen::SparseMatrix<double> s = cotangent_matrix(corners);
+        const Matrix lengths = edge_lengths(corners, corner_indices), areas = double_areas(lengths);
+        const Eigen::SparseMatrix<double> s =
+            cotangent_matrix(corners, corner_indices, cotangent_entries(lengths, areas));
         const Matrix energy = n.transpose() * s * n;
-        const double a = 0.5 * double_area(corners);
-        for (int c = 0; c < 3; ++c) kappa[faces[f][c]] += energy.trace(), area[faces[f][c]] += a;
+        for (int c = 0; c < 3; ++c) kappa[faces[f][c]] += energy.trace(), area[faces[f][c]] += 0.5 * areas(0);
     }
     for (std::size_t v = 0; v < kappa.size(); ++v) kappa[v] /= area[v];
     return kappa;
