@@ -9,7 +9,7 @@
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
-PYTHON ?= /usr/bin/python3
+PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
@@ -29,12 +29,16 @@ release: setup
 	@cmake --preset release >/dev/null
 	@cmake --build --preset release
 
-demo: release
+demo: setup
+	@cmake --preset release >/dev/null
+	@cmake --build --preset release --target gaussmap_cli example_picture
 	@mkdir -p out
-	$(PROGRAM) shape knot --grid 600x60 --jitter 0.2 -o out/knot.ply
-	$(PROGRAM) curvature out/knot.ply --truth exact_density --color -o out/knot-curvature.ply
-	@if [ -n "$(IN)" ]; then set -x; $(PROGRAM) curvature "$(IN)" --color -o "out/$$(basename "$(IN)" | sed 's/\.[^.]*$$//')-curvature.ply"; fi
-	@echo; echo "Written, to open in MeshLab or CloudCompare:"; ls -1 out/*-curvature.ply | sed 's/^/  /'
+	$(PROGRAM) shape bumpy --subdivisions 6 --jitter 0.2 -o out/bumpy.ply
+	$(PROGRAM) curvature out/bumpy.ply --truth exact_density --color -o out/bumpy-curvature.ply -o out/bumpy-curvature.png
+	build/release/examples/example_picture out/picture.png
+	@if [ -n "$(IN)" ]; then name="out/$$(basename "$(IN)" | sed 's/\.[^.]*$$//')-curvature"; set -x; \
+	  $(PROGRAM) curvature "$(IN)" --color -o "$$name.ply" -o "$$name.png"; fi
+	@echo; echo "Written (the PLY open in MeshLab and CloudCompare):"; ls -1 out/*-curvature.* out/picture.png | sed 's/^/  /'
 
 test: test-release test-cli test-asan test-tsan
 	@echo; echo "All suites passed."
@@ -43,13 +47,13 @@ test-release: release
 	ctest --preset release --no-tests=error -j 2
 
 test-cli: release
-	GAUSSMAP=$(PROGRAM) $(PYTHON) -m pytest -q -p no:cacheprovider tests/cli
+	GAUSSMAP=$(PROGRAM) $(PYTEST) tests/cli
 
 test-asan: setup
 	@cmake --preset asan >/dev/null
 	@cmake --build --preset asan
 	ctest --preset asan --no-tests=error -j 2
-	GAUSSMAP=build/asan/gaussmap $(PYTHON) -m pytest -q -p no:cacheprovider tests/cli
+	GAUSSMAP=build/asan/gaussmap $(PYTEST) tests/cli
 
 # Data races: the tests that run with several threads.
 test-tsan: setup
@@ -60,7 +64,7 @@ test-tsan: setup
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
 	@cmake --preset release >/dev/null
-	run-clang-tidy-14 -quiet -p build/release '/(src|cli)/' 2>/dev/null
+	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null
 
 bench: setup
 	@cmake --preset bench >/dev/null

@@ -60,8 +60,7 @@ Json defects(const Inspection& found, bool mesh) {
 Json report_on(const std::string& path, const Geometry& geometry, const Inspection& found) {
     const bool mesh = !geometry.faces.empty();
     Json report = {{"file", path}, {"kind", mesh ? "mesh" : "cloud"}};
-    const bool told = geometry.format != gaussmap::Format::detect;
-    report["format"] = name_of(told ? geometry.format : gaussmap::format_of(path));
+    report["format"] = name_of(geometry.format);
     report["vertices"] = found.vertices;
     report["faces"] = found.faces;
     report["polygons"] = geometry.polygons.empty() ? Json() : Json(geometry.polygons.count());

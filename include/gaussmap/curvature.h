@@ -77,14 +77,14 @@ struct CloudCurvatureOptions {
 };
 
 struct CloudCurvature {
-    std::vector<double> density;      ///< a point, 1/length²; NaN where undefined
-    std::vector<double> kappa;        ///< a point, sum over its fan, no unit; NaN where undefined
-    std::vector<double> normals;      ///< the unit normals used, 3 a point; NaN where undefined
-    std::size_t undefined = 0;        ///< points whose density is NaN
-    std::size_t duplicates = 0;       ///< points at the position of an earlier one (they share its result)
-    std::size_t non_finite = 0;       ///< points with a NaN or infinite coordinate
-    std::size_t boundary = 0;         ///< points whose fan is open; copies count once
-    std::size_t lowered = 0;          ///< points whose jet had to take a lower degree than asked for; copies count once
+    std::vector<double> density;  ///< a point, 1/length²; NaN where undefined
+    std::vector<double> kappa;    ///< a point, sum over its fan, no unit; NaN where undefined
+    std::vector<double> normals;  ///< the unit normals used, 3 a point; NaN where undefined
+    std::size_t undefined = 0;    ///< points whose density is NaN
+    std::size_t duplicates = 0;   ///< points at the position of an earlier one (they share its result)
+    std::size_t non_finite = 0;   ///< points with a NaN or infinite coordinate
+    std::size_t boundary = 0;     ///< points whose fan is open; copies count once
+    std::size_t lowered = 0;      ///< points whose jet had to take a lower degree than asked for; copies count once
     double seconds_neighbors = 0;
     double seconds_normals = 0;
     double seconds_curvature = 0;

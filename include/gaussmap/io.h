@@ -31,7 +31,7 @@ struct Property {
     std::string name;
     Type type = Type::float32;
     bool list = false;
-    Type count_type = Type::uint8;       ///< of a list's length in PLY
+    Type count_type = Type::uint8;  ///< of a list's length in PLY
     std::vector<std::byte> bytes;
     std::vector<std::uint64_t> offsets;  ///< lists: item i holds values offsets[i] … offsets[i+1] − 1
 
@@ -54,8 +54,9 @@ struct Element {
 
 /// The faces as the file had them, kept only where one of them is no triangle.
 struct Polygons {
-    std::vector<std::uint64_t> offsets;   ///< count + 1
-    std::vector<std::int32_t> corners;    ///< vertex indices of polygon i: corners[offsets[i]] … corners[offsets[i+1] − 1]
+    std::vector<std::uint64_t> offsets;  ///< count + 1
+    std::vector<std::int32_t>
+        corners;  ///< vertex indices of polygon i: corners[offsets[i]] … corners[offsets[i+1] − 1]
 
     std::size_t count() const { return offsets.empty() ? 0 : offsets.size() - 1; }
     bool empty() const { return offsets.empty(); }
@@ -63,27 +64,29 @@ struct Polygons {
 
 /// What a file holds.
 struct Geometry {
-    std::vector<double> vertices;         ///< 3 a vertex
-    std::vector<std::int32_t> faces;      ///< 3 a triangle; empty: a cloud
-    std::vector<double> normals;          ///< 3 a vertex as the file gave them, or empty
-    Type vertex_type = Type::float64;     ///< of the coordinates in the file, and of those written
+    std::vector<double> vertices;      ///< 3 a vertex
+    std::vector<std::int32_t> faces;   ///< 3 a triangle; empty: a cloud
+    std::vector<double> normals;       ///< 3 a vertex as the file gave them, or empty
+    Type vertex_type = Type::float64;  ///< of the coordinates in the file, and of those written
     Type normal_type = Type::float32;
 
-    /// Other vertex properties by name: red green blue alpha (uint8), intensity, quality, … One value (or list) a vertex.
+    /// Other vertex properties by name: red green blue alpha (uint8), intensity, quality, … One value (or list) a
+    /// vertex.
     std::vector<Property> vertex_properties;
     /// Other face properties: one a triangle, or one a polygon where `polygons` is kept. Texture coordinates of
     /// corners are the list `texcoord` (u v a corner), MeshLab's convention.
     std::vector<Property> face_properties;
 
     Polygons polygons;
-    std::vector<std::int32_t> polygon_of;     ///< with polygons: triangle → polygon
-    std::vector<std::int32_t> polygon_corner; ///< with polygons: 3 a triangle, the corners within that polygon
+    std::vector<std::int32_t> polygon_of;      ///< with polygons: triangle → polygon
+    std::vector<std::int32_t> polygon_corner;  ///< with polygons: 3 a triangle, the corners within that polygon
 
-    std::vector<Element> elements;            ///< further PLY elements
-    std::vector<std::string> comments;        ///< PLY comments; those that begin with "obj_info " are its obj_info lines
-    std::size_t width = 0;                    ///< points a row of an organised PCD; 0: unorganised
-    Format format = Format::detect;           ///< of the file it was read from, as its content told
-    std::vector<std::string> notes;           ///< what reading had to do, each a sentence for a person ("3 faces of fewer than 3 corners left out")
+    std::vector<Element> elements;      ///< further PLY elements
+    std::vector<std::string> comments;  ///< PLY comments; those that begin with "obj_info " are its obj_info lines
+    std::size_t width = 0;              ///< points a row of an organised PCD; 0: unorganised
+    Format format = Format::detect;     ///< of the file it was read from, as its content told
+    std::vector<std::string>
+        notes;  ///< what reading had to do, each a sentence for a person ("3 faces of fewer than 3 corners left out")
 
     std::size_t vertex_count() const { return vertices.size() / 3; }
     std::size_t face_count() const { return faces.size() / 3; }

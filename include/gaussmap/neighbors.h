@@ -29,11 +29,11 @@ Neighbors nearest_neighbors(Points points, int k, const Execution& run = {});
 
 /// The cloud without repetitions: finite points, each position once (its first holder), in input order.
 struct DistinctPoints {
-    std::vector<double> points;            ///< 3 values each
-    std::vector<std::int32_t> source;      ///< distinct point → input index
-    std::vector<std::int32_t> target;      ///< input index → distinct point, −1 if not finite
-    std::size_t duplicates = 0;            ///< finite inputs at the position of an earlier one
-    std::size_t non_finite = 0;            ///< inputs with a NaN or infinite coordinate
+    std::vector<double> points;        ///< 3 values each
+    std::vector<std::int32_t> source;  ///< distinct point → input index
+    std::vector<std::int32_t> target;  ///< input index → distinct point, −1 if not finite
+    std::size_t duplicates = 0;        ///< finite inputs at the position of an earlier one
+    std::size_t non_finite = 0;        ///< inputs with a NaN or infinite coordinate
 };
 
 /// \throw std::invalid_argument on more than 2³¹ − 1 points. Time O(n) expected, +0 and −0 are equal.
@@ -44,19 +44,18 @@ DistinctPoints distinct_points(Points points);
 /// Chain of point i: `index[begin[i]] … index[begin[i+1] − 1]`; a triangle (i, index[j], index[j+1]) for each
 /// consecutive pair, and (i, last, first) too where `closed[i]`.
 struct Fans {
-    std::vector<std::uint64_t> begin;   ///< n + 1 offsets
-    std::vector<std::int32_t> index;    ///< neighbour indices
-    std::vector<std::uint8_t> closed;   ///< 0: a boundary point
+    std::vector<std::uint64_t> begin;  ///< n + 1 offsets
+    std::vector<std::int32_t> index;   ///< neighbour indices
+    std::vector<std::uint8_t> closed;  ///< 0: a boundary point
 };
 
 /// The fan of every point, by inversion and one hull (docs/method.md, eq. (7)).
 /// \param points     n finite points.
 /// \param normals    n normals of any positive length; a NaN or zero normal gives an empty fan.
 /// \param neighbors  of these points.
-/// Neighbours cocircular with the point all stay in its fan, so that the fan does not depend on how points are numbered;
-/// of neighbours in one direction the nearest stays, of equal ones the first.
-/// \throw std::invalid_argument on arrays of different lengths, or a neighbour that is no point (its row is named).
-/// Time O(n k log k).
+/// Neighbours cocircular with the point all stay in its fan, so that the fan does not depend on how points are
+/// numbered; of neighbours in one direction the nearest stays, of equal ones the first. \throw std::invalid_argument on
+/// arrays of different lengths, or a neighbour that is no point (its row is named). Time O(n k log k).
 Fans fans(Points points, Points normals, const Neighbors& neighbors, const Execution& run = {});
 
 }  // namespace gaussmap

@@ -22,15 +22,18 @@ enum class NormalWeights {
 
 /// How the normal of a cloud point is fitted to its neighbours.
 enum class CloudNormals {
-    pca,  ///< smallest principal direction of the neighbours. Hoppe et al., "Surface Reconstruction from Unorganized Points", 1992
-    jet,  ///< normal of a fitted polynomial height field. Cazals and Pouget, "Estimating Differential Quantities Using Polynomial Fitting of Osculating Jets", 2005
+    pca,  ///< smallest principal direction of the neighbours. Hoppe et al., "Surface Reconstruction from Unorganized
+          ///< Points", 1992
+    jet,  ///< normal of a fitted polynomial height field. Cazals and Pouget, "Estimating Differential Quantities Using
+          ///< Polynomial Fitting of Osculating Jets", 2005
 };
 
 /// How the signs of estimated normals are brought to agree.
 enum class Orientation {
     local,  ///< inside each fan, to the centre's normal: no global sign is sought, every point stands alone
-    mst,    ///< along a minimum spanning tree of 1 − |n·n'| (Hoppe et al. 1992), outward at the highest point of each part
-    none,   ///< as the fit left them
+    mst,   ///< along a minimum spanning tree of 1 − |n·n'| (Hoppe et al. 1992), outward at the highest point of each
+           ///< part
+    none,  ///< as the fit left them
 };
 
 /// Unit vertex normals of a triangle mesh: 3 values a vertex, NaN where no face defines one
@@ -63,7 +66,6 @@ CloudNormalsResult cloud_normals(Points points, const Neighbors& neighbors, cons
 /// neighbour graph, weight 1 − |n·n'|; each connected part starts with its highest point looking up (+z).
 /// NaN normals are left as they are and join nothing. Ties are broken by index.
 /// Time O(n k log n), memory O(n k). Source: Hoppe et al. 1992, section 3.3.
-void orient_normals(Points points, const Neighbors& neighbors, std::vector<double>& normals,
-                    const Execution& run = {});
+void orient_normals(Points points, const Neighbors& neighbors, std::vector<double>& normals, const Execution& run = {});
 
 }  // namespace gaussmap

@@ -11,11 +11,11 @@ namespace gaussmap {
 /// A triangulated analytic surface. Faces are counterclockwise seen from the side the normals point to.
 /// k1 ≥ k2 in the convention that a sphere with outward normals has k1 = k2 = 1/r > 0.
 struct Surface {
-    std::vector<double> vertices;      ///< 3 a vertex
-    std::vector<std::int32_t> faces;   ///< 3 a face
-    std::vector<double> normals;       ///< exact unit normals, 3 a vertex
-    std::vector<double> k1, k2;        ///< exact principal curvatures, 1/length
-    std::vector<double> density;       ///< k1² + k2², 1/length²
+    std::vector<double> vertices;     ///< 3 a vertex
+    std::vector<std::int32_t> faces;  ///< 3 a face
+    std::vector<double> normals;      ///< exact unit normals, 3 a vertex
+    std::vector<double> k1, k2;       ///< exact principal curvatures, 1/length
+    std::vector<double> density;      ///< k1² + k2², 1/length²
 };
 
 struct SurfaceOptions {
@@ -42,10 +42,10 @@ Surface sphere(int subdivisions, double radius = 1, const SurfaceOptions& option
 Surface torus(double major, double minor, int around, int across, const SurfaceOptions& options = {});
 
 /// Tube of radius `tube` around the (p, q) torus knot that winds p times about the axis of a torus of radii
-/// `major`, `minor` and q times about its tube. k1 = 1/a, k2 = −c cosθ/(1 − a c cosθ) with c the curvature of the curve.
-/// Strands that come nearer to each other than 2·`tube` run through each other; the values stay those of the tube.
-/// \throw std::invalid_argument unless p, q ≥ 1 are coprime, 0 < minor < major and the tube is thinner than the curve's
-/// smallest radius of curvature.
+/// `major`, `minor` and q times about its tube. k1 = 1/a, k2 = −c cosθ/(1 − a c cosθ) with c the curvature of the
+/// curve. Strands that come nearer to each other than 2·`tube` run through each other; the values stay those of the
+/// tube. \throw std::invalid_argument unless p, q ≥ 1 are coprime, 0 < minor < major and the tube is thinner than the
+/// curve's smallest radius of curvature.
 Surface torus_knot(int p, int q, double major, double minor, double tube, int around, int across,
                    const SurfaceOptions& options = {});
 
@@ -55,8 +55,8 @@ Surface figure_eight_knot(double scale, double tube, int around, int across, con
 /// Ellipsoid x²/a² + y²/b² + z²/c² = 1 from the subdivided icosahedron, stretched.
 Surface ellipsoid(double a, double b, double c, int subdivisions, const SurfaceOptions& options = {});
 
-/// Sphere with smooth bumps: radius r (1 + amplitude · sin(fx) sin(fy) sin(fz)) in the direction (x, y, z), f the frequency.
-/// \throw std::invalid_argument unless |amplitude| < 1.
+/// Sphere with smooth bumps: radius r (1 + amplitude · sin(fx) sin(fy) sin(fz)) in the direction (x, y, z), f the
+/// frequency. \throw std::invalid_argument unless |amplitude| < 1.
 Surface bumpy_sphere(double radius, double amplitude, double frequency, int subdivisions,
                      const SurfaceOptions& options = {});
 
@@ -66,10 +66,12 @@ Surface catenoid(double neck, double height, int around, int across, const Surfa
 /// Cylinder about z, |z| ≤ `height` / 2, open at both ends: k = {1/r, 0}.
 Surface cylinder(double radius, double height, int around, int across, const SurfaceOptions& options = {});
 
-/// Rectangle width × depth in z = 0 about the origin, open, `around` vertices along x and `across` along y: k1 = k2 = 0.
+/// Rectangle width × depth in z = 0 about the origin, open, `around` vertices along x and `across` along y: k1 = k2 =
+/// 0.
 Surface plane(double width, double depth, int around, int across, const SurfaceOptions& options = {});
 
-/// Height field z = amplitude · cos(2π x / wavelength) cos(2π y / wavelength) over width × depth: strongly varying, open.
+/// Height field z = amplitude · cos(2π x / wavelength) cos(2π y / wavelength) over width × depth: strongly varying,
+/// open.
 Surface waves(double width, double depth, double amplitude, double wavelength, int around, int across,
               const SurfaceOptions& options = {});
 

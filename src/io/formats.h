@@ -16,7 +16,8 @@ struct Source {
 };
 
 /// Throw FormatError "NAME: where: what; what to do" (`where` and `todo` may be empty and are then left out).
-[[noreturn]] void fail(const Source& source, const std::string& where, const std::string& what, const std::string& todo = "");
+[[noreturn]] void fail(const Source& source, const std::string& where, const std::string& what,
+                       const std::string& todo = "");
 
 Geometry read_ply(const Source& source);
 Geometry read_obj(const Source& source);

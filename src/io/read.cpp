@@ -30,7 +30,7 @@ struct Foreign {
 };
 constexpr const char* convert_it = "convert it to one of ";
 constexpr std::array<Foreign, 12> foreign = {
-    {{"LASF", "a LAS or LAZ file", "read it with the Python package gaussmap, or convert it to one of "},
+    {{"LASF", "a LAS or LAZ file", convert_it},
      {"ASTM-E57", "an E57 file", convert_it},
      {"DRACO", "a Draco file", convert_it},
      {std::string_view("II*\0", 4), "a TIFF picture", convert_it},
@@ -115,14 +115,32 @@ Format detect(const Source& source) {
     fail(source, "", "the format is not known", convert_it + known_extensions());
 }
 
-/// No text at all behind the name of a text format. (UTF-16 with its mark is told by text_of.)
+/// No text at all behind the name of a text format.
 void check_text(const Source& source) {
-    const std::string_view head = source.bytes.substr(0, 4096);
-    if (head.starts_with("\xFE\xFF") || head.starts_with("\xFF\xFE")) return;
-    const std::size_t at = head.find('\0');
-    if (at == head.npos) return;
+    text_of(source);  // tells UTF-16, which is full of zero bytes
+    const std::size_t at = source.bytes.substr(0, 4096).find('\0');
+    if (at == std::string_view::npos) return;
     fail(source, "byte " + std::to_string(at + 1), "a zero byte, so this is no text",
          "give a text file in UTF-8, or the format that it is of");
+}
+
+Geometry read_as(Format format, const Source& source) {
+    switch (format) {
+        case Format::ply:
+            return read_ply(source);
+        case Format::obj:
+            check_text(source);
+            return read_obj(source);
+        case Format::off:
+            return read_off(source);
+        case Format::stl:
+            return read_stl(source);
+        case Format::pcd:
+            return read_pcd(source);
+        default:
+            check_text(source);
+            return read_xyz(source);
+    }
 }
 
 }  // namespace
@@ -133,22 +151,9 @@ Geometry read_bytes(std::string_view bytes, const std::string& name, Format form
     const io::Source source{bytes, name, run};
     if (bytes.empty()) io::fail(source, "", "the file is empty (0 bytes)", "write it anew");
     if (format == Format::detect) format = io::detect(source);
-    switch (format) {
-        case Format::ply:
-            return io::read_ply(source);
-        case Format::obj:
-            io::check_text(source);
-            return io::read_obj(source);
-        case Format::off:
-            return io::read_off(source);
-        case Format::stl:
-            return io::read_stl(source);
-        case Format::pcd:
-            return io::read_pcd(source);
-        default:
-            io::check_text(source);
-            return io::read_xyz(source);
-    }
+    Geometry geometry = io::read_as(format, source);
+    geometry.format = format;
+    return geometry;
 }
 
 Geometry read(const std::string& path, Format format, const Execution& run) {

@@ -41,7 +41,9 @@ class Lines {
     std::size_t number_ = 0;
 };
 
-inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r' || c == '\n'; }
+inline bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r' || c == '\n';
+}
 
 /// Cut the next word off the front of `text`, blanks skipped; empty where there is none.
 inline std::string_view next_word(std::string_view& text) {
@@ -54,7 +56,8 @@ inline std::string_view next_word(std::string_view& text) {
     return word;
 }
 
-/// The whole word as a number: "1e-3", "+2", "nan", "inf", "-INF"; false otherwise. Values beyond double become ±inf or 0.
+/// The whole word as a number: "1e-3", "+2", "nan", "inf", "-INF"; false otherwise. Values beyond double become ±inf or
+/// 0.
 bool parse(std::string_view word, double& value);
 /// The whole word as an integer; false otherwise, or out of range.
 bool parse(std::string_view word, std::int64_t& value);

@@ -37,7 +37,7 @@ class Run:
 def gaussmap(tmp_path):
     """Run the program in an empty folder: gaussmap("info", "x.ply", stdin=b"…")."""
     if not PROGRAM.exists():
-        pytest.skip(f"{PROGRAM} is not built (set GAUSSMAP to the program)")
+        pytest.fail(f"{PROGRAM} is not built (set GAUSSMAP to the program)")
 
     def run(*arguments, stdin=b"", timeout=120, **environment):
         done = subprocess.run(
@@ -64,5 +64,5 @@ def data():
 @pytest.fixture
 def program():
     if not PROGRAM.exists():
-        pytest.skip(f"{PROGRAM} is not built (set GAUSSMAP to the program)")
+        pytest.fail(f"{PROGRAM} is not built (set GAUSSMAP to the program)")
     return PROGRAM

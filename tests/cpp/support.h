@@ -12,10 +12,12 @@
 
 namespace support {
 
-inline std::filesystem::path data_folder() { return GAUSSMAP_DATA; }
+inline std::filesystem::path data_folder() {
+    return GAUSSMAP_DATA;
+}
 
 /// In a test: skip with a clear word where the real files are absent.
-#define NEED_DATA()                                          \
+#define NEED_DATA()                                             \
     if (!std::filesystem::is_directory(support::data_folder())) \
     GTEST_SKIP() << "no folder of real files (set GAUSSMAP_DATA when configuring)"
 
@@ -30,9 +32,7 @@ struct Random {
         return z ^ (z >> 31);
     }
     double uniform() { return static_cast<double>(next() >> 11) * 0x1p-53; }
-    double normal() {
-        return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * std::numbers::pi * uniform());
-    }
+    double normal() { return std::sqrt(-2 * std::log(1 - uniform())) * std::cos(2 * std::numbers::pi * uniform()); }
     std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
 };
 
@@ -52,7 +52,8 @@ inline std::vector<double> times(const std::vector<double>& matrix, const std::v
     std::vector<double> out(points.size());
     for (std::size_t i = 0; i < points.size(); i += 3)
         for (int r = 0; r < 3; ++r)
-            out[i + r] = matrix[3 * r] * points[i] + matrix[3 * r + 1] * points[i + 1] + matrix[3 * r + 2] * points[i + 2];
+            out[i + r] =
+                matrix[3 * r] * points[i] + matrix[3 * r + 1] * points[i + 1] + matrix[3 * r + 2] * points[i + 2];
     return out;
 }
 

@@ -82,9 +82,7 @@ TEST(Format, OtherFilesAreNamed) {
     };
     const std::string list = gaussmap::known_extensions();
     EXPECT_EQ(error_of("LASF\1\2", "a.laz"),
-              "a.laz: a LAS or LAZ file, which is not read; read it with the Python package "
-              "gaussmap, or convert it to one of " +
-                  list);
+              "a.laz: a LAS or LAZ file, which is not read; convert it to one of " + list);
     EXPECT_EQ(error_of("ASTM-E57", "a.e57"), "a.e57: an E57 file, which is not read; convert it to one of " + list);
     EXPECT_EQ(error_of("\x1F\x8B zip", "a.ply"),
               "a.ply: a file compressed by gzip, which is not read; unpack it, or convert it to one of " + list);

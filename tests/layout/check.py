@@ -36,7 +36,7 @@ for path in [*root.glob("src/*.h"), *root.glob("src/*.cpp")]:
         if name == "gaussmap/io.h" or name.startswith("io/"):
             complain(path, "an algorithm includes files' formats")
 
-for folder in ("cli", "bench", "python", "tests/consumer"):
+for folder in ("cli", "bench", "examples", "python", "tests/consumer"):
     own = {p.name for p in (root / folder).rglob("*.h")}
     for path in [*(root / folder).rglob("*.h"), *(root / folder).rglob("*.cpp")]:
         for kind, name in includes(path):
