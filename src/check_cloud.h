@@ -20,16 +20,16 @@ inline void check_countable(Points points) {
 }
 
 /// Rows of k neighbours, as `Neighbors` holds them.
-/// \throw std::invalid_argument unless there is one for each point and every index is −1 or one of the points.
+/// \throw std::invalid_argument unless there is one row for each point and every index is −1 or one of the points.
 inline void check_neighbors(const std::vector<std::int32_t>& index, std::size_t k, std::size_t points) {
-    const std::size_t rows = k == 0 ? 0 : index.size() / k;
-    if (rows != points)
-        throw std::invalid_argument("neighbors has " + std::to_string(rows) + " rows, but there are " +
-                                    std::to_string(points) + " points");
-    for (std::size_t i = 0; i < index.size(); ++i)
-        if (index[i] < -1 || index[i] >= static_cast<std::int64_t>(points))
-            throw std::invalid_argument("neighbors[" + std::to_string(i / k) + "][" + std::to_string(i % k) + "] = " +
-                                        std::to_string(index[i]) + " is outside [-1, " + std::to_string(points) + ")");
+    if (index.size() != k * points)
+        throw std::invalid_argument("neighbors has " + std::to_string(index.size()) + " entries, but there are " +
+                                    std::to_string(points) + " points with " + std::to_string(k) + " each");
+    for (std::size_t i = 0; i < points; ++i)
+        for (std::size_t j = 0; j < k; ++j)
+            if (const std::int32_t n = index[i * k + j]; n < -1 || n >= static_cast<std::int64_t>(points))
+                throw std::invalid_argument("neighbors[" + std::to_string(i) + "][" + std::to_string(j) + "] = " +
+                                            std::to_string(n) + " is outside [-1, " + std::to_string(points) + ")");
 }
 
 /// \throw std::invalid_argument on a degree of jets that there is not.

@@ -217,7 +217,7 @@ Columns read_compressed(const Source& source, const Header& header, std::string_
     }
     // Three bytes of LZF make at most 264 (LibLZF's longest match), so a larger claim is a lie.
     const std::size_t record = header.record();
-    if (unpacked / record != header.points || unpacked % record != 0 || unpacked / 88 > packed) {
+    if (record == 0 || unpacked / record != header.points || unpacked % record != 0 || unpacked / 88 > packed) {
         fail(source, "",
              "the compressed points claim " + std::to_string(unpacked) + " bytes unpacked, but " +
                  std::to_string(header.points) + " points of " + std::to_string(record) + " bytes in " +
@@ -266,7 +266,8 @@ Columns read_ascii(const Source& source, const Header& header, Lines& lines, Geo
     std::size_t values = 0;
     for (const Field& field : header.fields) values += field.count;
     // Every value takes a character and a separator.
-    if (const std::size_t most = (lines.rest().size() + 1) / 2 / values; most < header.points) {
+    const std::size_t most = values == 0 ? 0 : (lines.rest().size() + 1) / 2 / values;
+    if (most < header.points) {
         fail(source, "header",
              std::to_string(header.points) + " points are claimed, but only " + counted(lines.rest().size(), "byte") +
                  " follow",

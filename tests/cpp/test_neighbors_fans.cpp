@@ -276,7 +276,8 @@ TEST(Fans, RefusesArraysThatDoNotMatch) {
     const std::vector<double> points = {0, 0, 0, 1, 0, 0, 0, 1, 0}, two = {0, 0, 1, 0, 0, 1};
     Neighbors neighbors = nearest_neighbors(points, 2);
     EXPECT_EQ(refusal([&] { fans(points, two, neighbors); }), "normals has 2 entries, but there are 3 points");
-    EXPECT_EQ(refusal([&] { fans(two, two, neighbors); }), "neighbors has 3 rows, but there are 2 points");
+    EXPECT_EQ(refusal([&] { fans(two, two, neighbors); }),
+              "neighbors has 6 entries, but there are 2 points with 2 each");
     neighbors.index[3] = 3;
     EXPECT_EQ(refusal([&] { fans(points, points, neighbors); }), "neighbors[1][1] = 3 is outside [-1, 3)");
     neighbors.index[3] = -2;

@@ -167,7 +167,8 @@ TEST(CloudNormals, RefusesWhatItCannotDo) {
               }),
               "degree = 5 is outside 1 to 4");
     const Points fewer(sphere.points.data(), 29);
-    EXPECT_EQ(refusal([&] { cloud_normals(fewer, neighbors); }), "neighbors has 30 rows, but there are 29 points");
+    EXPECT_EQ(refusal([&] { cloud_normals(fewer, neighbors); }),
+              "neighbors has 150 entries, but there are 29 points with 5 each");
     neighbors.index[7] = 30;
     EXPECT_EQ(refusal([&] { cloud_normals(sphere.points, neighbors); }), "neighbors[1][2] = 30 is outside [-1, 30)");
     std::vector<double> normals = sphere.normals;
