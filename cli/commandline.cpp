@@ -48,7 +48,7 @@ std::string names_of(const CLI::Option& option) {
 
 /// What CLI11 found wrong, in our words: "--k: 'x' is not …".
 std::string in_our_words(const CLI::ParseError& error) {
-    const std::string text = error.what();
+    std::string text = error.what();
     const std::size_t colon = text.find(": ");
     const std::string name = text.substr(0, colon);
     if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return name + ": a value is missing; write one after it";
