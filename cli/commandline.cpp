@@ -129,10 +129,10 @@ CLI::Option* CommandLine::flag(const std::string& names, bool& value, const std:
     return app_.add_flag(names, value, about)->group(group_);
 }
 
-void CommandLine::outputs(std::vector<std::string>& values, bool required) {
+void CommandLine::outputs(std::vector<std::string>& values, bool required, const std::string& extensions) {
     app_.add_option("-o,--output", values,
-                    "Write this file; the extension decides the format (.ply .obj .off .stl .xyz .pcd). "
-                    "As often as wanted; - is standard output")
+                    "Write this file; the extension decides the format (" + extensions +
+                        "). As often as wanted; - is standard output")
         ->type_name("OUT")
         ->group(group_)
         ->expected(1)

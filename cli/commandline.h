@@ -42,8 +42,8 @@ class CommandLine {
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     }
     CLI::Option* flag(const std::string& names, bool& value, const std::string& about);
-    /// -o, as often as wanted, each with one value.
-    void outputs(std::vector<std::string>& values, bool required);
+    /// -o, as often as wanted, each with one value; `extensions` is what its help names.
+    void outputs(std::vector<std::string>& values, bool required, const std::string& extensions);
     void group(const std::string& title) { group_ = title; }
 
     /// True when there is something to do; false when the help was asked for and has been printed.

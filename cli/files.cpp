@@ -74,7 +74,11 @@ std::vector<std::string> lost(const gaussmap::Geometry& geometry, Format format)
 
 void Outputs::declare(CommandLine& line, bool required) {
     line.group("Output");
-    line.outputs(paths, required);
+    const std::string formats_of_geometry = ".ply .obj .off .stl .xyz .pcd";
+    line.outputs(paths, required,
+                 !geometries ? ".png"
+                 : pictures  ? formats_of_geometry + " .png"
+                             : formats_of_geometry);
     if (!geometries) return;
     line.option("--format", format_name, "F", "Format of -o -: ply, obj, off, stl, xyz or pcd (default: ply)")
         ->check(one_of(format_names));

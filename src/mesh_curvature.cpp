@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "check.h"
 #include "corrected_curvature.h"
@@ -48,7 +49,7 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     result.seconds_normals = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    const ZeroedArray sums = zeroed_array(2 * vertices.count);
+    const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);
     result.face_density.resize(faces.count);
     fused_pass(vertices, faces, result.normals, sums.get(), result.kappa.data(), result.face_density.data(),

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 
 #include "check.h"
 #include "first_touch.h"
@@ -14,7 +13,7 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::size_t stretch = 1 << 14;  // faces a kernel call
+constexpr std::size_t stretch = 1 << 12;  // faces a kernel call
 constexpr std::size_t vertex_block = 1 << 16;
 
 FusedKernel best_kernel() {
@@ -42,12 +41,6 @@ std::vector<SetAside> run_chunk(FusedKernel kernel, FusedPass pass, const FaceCh
 
 }  // namespace
 
-ZeroedArray zeroed_array(std::size_t count) {
-    auto* array = static_cast<double*>(std::calloc(std::max<std::size_t>(count, 1), sizeof(double)));
-    if (!array) throw std::bad_alloc();
-    return ZeroedArray(array);
-}
-
 void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
                 double* face_density, const Execution& run) {
     check_count("normals", unit_normals.count, vertices.count, "vertices");
@@ -55,12 +48,24 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
     static const FusedKernel kernel = best_kernel();
     FusedPass pass{vertices.xyz, unit_normals.xyz, faces.abc, sums, face_kappa, face_density, nullptr, 0, nullptr};
     if (chunks.count() == 1) {
+        // Sums are cleared just ahead of the faces that first need them, while both are in the cache.
+        std::size_t cleared = 0;
+        const auto clear_to = [&](std::size_t end) {
+            if (end > cleared) std::fill(sums + 2 * cleared, sums + 2 * end, 0.0);
+            cleared = std::max(cleared, end);
+        };
         for_blocks(faces.count, stretch, {1, run.progress}, [&](std::size_t, std::size_t begin, std::size_t end) {
-            if (!faces_within(faces, begin, end, vertices.count)) check_faces(faces, vertices.count);
+            const std::size_t highest = highest_index(faces, begin, end);
+            if (highest >= std::min<std::size_t>(vertices.count, 0x80000000u)) check_faces(faces, vertices.count);
+            clear_to(highest + 1);
             kernel(pass, begin, end);
         });
+        clear_to(vertices.count);
         return;
     }
+    for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::fill(sums + 2 * begin, sums + 2 * end, 0.0);
+    });
     std::vector<std::vector<SetAside>> aside(chunks.count());
     for_blocks(chunks.count(), 1, run,
                [&](std::size_t c, std::size_t, std::size_t) { aside[c] = run_chunk(kernel, pass, chunks, c); });
@@ -73,12 +78,8 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
 
 void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density_and_area,
                     const Execution& run) {
-    const Execution quiet{run.threads, {}};
-    for_blocks(vertices.count, vertex_block, quiet, [&](std::size_t, std::size_t begin, std::size_t end) {
-        std::fill(density_and_area + 2 * begin, density_and_area + 2 * end, 0.0);
-    });
     fused_pass(vertices, faces, unit_normals, density_and_area, nullptr, nullptr, run);
-    for_blocks(vertices.count, vertex_block, quiet, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (double* v = density_and_area + 2 * begin; v != density_and_area + 2 * end; v += 2) {
             const double twice_area = v[1], quotient = v[0] / twice_area;
             v[0] = twice_area > 0 ? quotient : std::numeric_limits<double>::quiet_NaN();

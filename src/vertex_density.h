@@ -3,8 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 
 #include "gaussmap/types.h"
 
@@ -34,14 +32,7 @@ using FusedKernel = void (*)(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_baseline(FusedPass&, std::size_t begin, std::size_t end);
 void fused_kernel_avx2(FusedPass&, std::size_t begin, std::size_t end);
 
-struct Free {
-    void operator()(double* p) const { std::free(p); }
-};
-/// Zeros that cost nothing until they are touched, and are then in the cache.
-using ZeroedArray = std::unique_ptr<double[], Free>;
-ZeroedArray zeroed_array(std::size_t count);
-
-/// Sums for all vertices (2 each, zero at first), and kappa and density of every face unless null.
+/// Sums for all vertices (2 each, room given), and kappa and density of every face unless null.
 /// \throw std::invalid_argument at an index outside the vertices.
 void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
                 double* face_density, const Execution& run);

@@ -2,7 +2,9 @@
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "peers.h"
 
@@ -60,21 +62,43 @@ Eigen::SparseMatrix<double> cotangent_matrix(const Matrix& v, const Eigen::Matri
 
 }  // namespace
 
-std::vector<double> textbook_density(gaussmap::Points vertices, gaussmap::Triangles faces, gaussmap::Points normals) {
-    std::vector<double> kappa(vertices.count), area(vertices.count);
+struct Textbook {
+    Matrix v, n;
+    Eigen::MatrixXi f;
+};
+
+std::shared_ptr<const Textbook> textbook_mesh(gaussmap::Points vertices, gaussmap::Triangles faces,
+                                              gaussmap::Points normals) {
+    auto mesh = std::make_shared<Textbook>();
+    const auto rows = static_cast<Eigen::Index>(vertices.count);
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    using Indices = Eigen::Matrix<std::int32_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    mesh->v = Eigen::Map<const Rows>(vertices.xyz, rows, 3);
+    mesh->n = Eigen::Map<const Rows>(normals.xyz, rows, 3);
+    mesh->f = Eigen::Map<const Indices>(faces.abc, static_cast<Eigen::Index>(faces.count), 3);
+    return mesh;
+}
+
+std::vector<double> textbook_density(const Textbook& mesh) {
+    std::vector<double> kappa(static_cast<std::size_t>(mesh.v.rows())), area(kappa.size());
     Eigen::MatrixXi corner_indices(1, 3);
     corner_indices << 0, 1, 2;
-    for (std::size_t f = 0; f < faces.count; ++f) {
+    for (Eigen::Index t = 0; t < mesh.f.rows(); ++t) {
+        const Eigen::MatrixXi face = mesh.f.row(t);
         Matrix corners(3, 3), n(3, 3);
-        for (int c = 0; c < 3; ++c) {
-            corners.row(c) = Eigen::Map<const Eigen::RowVector3d>(vertices[faces[f][c]]);
-            n.row(c) = Eigen::Map<const Eigen::RowVector3d>(normals[faces[f][c]]);
-        }
+        for (int c = 0; c < 3; ++c) corners.row(c) = mesh.v.row(face(c)), n.row(c) = mesh.n.row(face(c));
         const Matrix lengths = edge_lengths(corners, corner_indices), areas = double_areas(lengths);
         const Eigen::SparseMatrix<double> s =
             cotangent_matrix(corners, corner_indices, cotangent_entries(lengths, areas));
-        const Matrix energy = n.transpose() * s * n;
-        for (int c = 0; c < 3; ++c) kappa[faces[f][c]] += energy.trace(), area[faces[f][c]] += 0.5 * areas(0);
+        double energy = 0;
+        for (int c = 0; c < 3; ++c) {
+            const Matrix coordinate = n.col(c);
+            energy += (coordinate.transpose() * s * coordinate)(0);
+        }
+        for (int c = 0; c < 3; ++c) {
+            kappa[static_cast<std::size_t>(face(c))] += energy;
+            area[static_cast<std::size_t>(face(c))] += 0.5 * areas(0);
+        }
     }
     for (std::size_t v = 0; v < kappa.size(); ++v) kappa[v] /= area[v];
     return kappa;
