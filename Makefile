@@ -11,6 +11,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
+THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
@@ -58,7 +59,7 @@ test-asan: setup
 # Data races: the tests that run with several threads.
 test-tsan: setup
 	@cmake --preset tsan >/dev/null
-	@cmake --build --preset tsan
+	@cmake --build --preset tsan --target $(THREADED)
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
 
 lint: setup
