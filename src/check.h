@@ -9,18 +9,15 @@
 
 namespace gaussmap {
 
-/// The highest index of faces [begin, end), read as unsigned: a negative one is beyond any number of vertices. No
-/// branch that would keep the loop scalar.
-inline std::uint32_t highest_index(Triangles faces, std::size_t begin, std::size_t end) {
-    std::uint32_t highest = 0;
-    for (std::size_t i = 3 * begin; i < 3 * end; ++i)
-        highest = std::max(highest, static_cast<std::uint32_t>(faces.abc[i]));
-    return highest;
-}
-
 /// Whether every index of faces [begin, end) lies in [0, vertices).
 inline bool faces_within(Triangles faces, std::size_t begin, std::size_t end, std::size_t vertices) {
-    return begin == end || highest_index(faces, begin, end) < std::min<std::size_t>(vertices, 0x80000000u);
+    // Read as unsigned, a negative index is a large one: one comparison a value, and no branch that keeps the loop
+    // scalar.
+    const auto limit = static_cast<std::uint32_t>(std::min<std::size_t>(vertices, 0x80000000u));
+    std::uint32_t bad = 0;
+    for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+        bad |= static_cast<std::uint32_t>(faces.abc[i]) >= limit ? 1u : 0u;
+    return bad == 0;
 }
 
 /// \throw std::invalid_argument at the first index outside [0, vertices).

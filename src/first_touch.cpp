@@ -23,6 +23,11 @@ bool lower_owners(const std::int32_t* first, const std::int32_t* last, std::uint
     return lowered;
 }
 
+/// Chunk 0 takes all that it touches: with two chunks nobody else writes, and nothing needs to be looked at first.
+void claim(const std::int32_t* first, const std::int32_t* last, std::uint8_t* owner) {
+    for (; first != last; ++first) std::atomic_ref<std::uint8_t>(owner[*first]).store(0, std::memory_order_relaxed);
+}
+
 /// Lower the owners of the vertices of faces [begin, end), which may lie in several chunks; whether any was higher.
 bool lower_owners(Triangles faces, FaceChunks& chunks, std::size_t begin, std::size_t end) {
     bool lowered = false;
@@ -52,10 +57,12 @@ FaceChunks chunk_faces(Triangles faces, std::size_t vertices, const Execution& r
     // wins is lower than what stood there before the pass: it ends.
     std::atomic<bool> bad{false}, again{true};
     while (again.exchange(false)) {
-        for_blocks(faces.count, block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for_blocks(chunks.begin[last], block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
             if (!faces_within(faces, begin, end, vertices)) {
                 bad = true;
-            } else if (lower_owners(faces, chunks, begin, std::min(end, chunks.begin[last])) && last > 1) {
+            } else if (last == 1) {
+                claim(faces.abc + 3 * begin, faces.abc + 3 * end, chunks.owner.data());
+            } else if (lower_owners(faces, chunks, begin, end)) {
                 again.store(true, std::memory_order_relaxed);
             }
         });

@@ -23,9 +23,9 @@ struct FaceChunks {
     std::size_t count() const { return begin.size() - 1; }
 };
 
-/// One chunk a thread (at most 255), fewer for small meshes. Several chunks have had their faces checked on the way; a
-/// single one has not been read: whoever walks over it checks each stretch while it is in the cache (check.h).
-/// \throw std::invalid_argument at an index outside [0, vertices), where there are several chunks.
+/// One chunk a thread (at most 255), fewer for small meshes. All chunks but the last have had their faces checked on
+/// the way; the last has not been read: whoever walks over it checks each stretch while it is in the cache (check.h).
+/// \throw std::invalid_argument at an index outside [0, vertices), in a chunk before the last.
 FaceChunks chunk_faces(Triangles faces, std::size_t vertices, const Execution& run);
 
 }  // namespace gaussmap

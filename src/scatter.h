@@ -1,6 +1,7 @@
 // Sums over the faces of each vertex of values that a function makes for the three corners of a face.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -42,14 +43,18 @@ std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const E
             }
         }
     };
+    const auto checked_work = [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        if (chunk + 1 == chunks.count() && !faces_within(faces, begin, end, vertices)) check_faces(faces, vertices);
+        work(chunk, begin, end);
+    };
     if (alone) {
-        for_blocks(faces.count, stretch, {1, run.progress}, [&](std::size_t, std::size_t begin, std::size_t end) {
-            if (!faces_within(faces, begin, end, vertices)) check_faces(faces, vertices);
-            work(0, begin, end);
-        });
+        for_blocks(faces.count, stretch, {1, run.progress},
+                   [&](std::size_t, std::size_t begin, std::size_t end) { checked_work(0, begin, end); });
     } else {
-        for_blocks(chunks.count(), 1, run,
-                   [&](std::size_t c, std::size_t, std::size_t) { work(c, chunks.begin[c], chunks.begin[c + 1]); });
+        for_blocks(chunks.count(), 1, run, [&](std::size_t c, std::size_t, std::size_t) {
+            for (std::size_t begin = chunks.begin[c]; begin < chunks.begin[c + 1]; begin += stretch)
+                checked_work(c, begin, std::min(begin + stretch, chunks.begin[c + 1]));
+        });
     }
     for (const auto& list : late)
         for (const Late& l : list)

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t stretch = 1 << 12;  // faces a kernel call
 constexpr std::size_t vertex_block = 1 << 16;
 
-FusedKernel best_kernel() {
+const FusedKernel& best_kernel() {
 #ifdef GAUSSMAP_X86
     if (__builtin_cpu_supports("avx2")) return fused_kernel_avx2;
 #endif
@@ -24,15 +24,18 @@ FusedKernel best_kernel() {
 }
 
 /// The kernel over a chunk that is one of several; returns what it set aside.
-std::vector<SetAside> run_chunk(FusedKernel kernel, FusedPass pass, const FaceChunks& chunks, std::size_t c) {
+std::vector<SetAside> run_chunk(const FusedKernel& kernel, FusedPass pass, Triangles faces, std::size_t vertices,
+                                const FaceChunks& chunks, std::size_t c) {
     std::vector<SetAside> aside;
     std::size_t used = 0;
     pass.owner = c == 0 ? nullptr : chunks.owner.data();  // the first chunk owns all that it touches
     pass.chunk = static_cast<std::uint8_t>(c);
     for (std::size_t begin = chunks.begin[c]; begin < chunks.begin[c + 1]; begin += stretch) {
+        const std::size_t end = std::min(begin + stretch, chunks.begin[c + 1]);
+        if (c + 1 == chunks.count() && !faces_within(faces, begin, end, vertices)) check_faces(faces, vertices);
         if (c > 0 && aside.size() < used + 3 * stretch) aside.resize(2 * used + 3 * stretch);
         pass.aside = aside.data() + used;
-        kernel(pass, begin, std::min(begin + stretch, chunks.begin[c + 1]));
+        kernel.faces(pass, begin, end);
         used = static_cast<std::size_t>(pass.aside - aside.data());
     }
     aside.resize(used);
@@ -45,7 +48,7 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
                 double* face_density, const Execution& run) {
     check_count("normals", unit_normals.count, vertices.count, "vertices");
     const FaceChunks chunks = chunk_faces(faces, vertices.count, run);
-    static const FusedKernel kernel = best_kernel();
+    const FusedKernel& kernel = best_kernel();
     FusedPass pass{vertices.xyz, unit_normals.xyz, faces.abc, sums, face_kappa, face_density, nullptr, 0, nullptr};
     if (chunks.count() == 1) {
         // Sums are cleared just ahead of the faces that first need them, while both are in the cache.
@@ -55,10 +58,10 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
             cleared = std::max(cleared, end);
         };
         for_blocks(faces.count, stretch, {1, run.progress}, [&](std::size_t, std::size_t begin, std::size_t end) {
-            const std::size_t highest = highest_index(faces, begin, end);
+            const std::size_t highest = kernel.highest(faces[begin], 3 * (end - begin));
             if (highest >= std::min<std::size_t>(vertices.count, 0x80000000u)) check_faces(faces, vertices.count);
             clear_to(highest + 1);
-            kernel(pass, begin, end);
+            kernel.faces(pass, begin, end);
         });
         clear_to(vertices.count);
         return;
@@ -67,8 +70,9 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
         std::fill(sums + 2 * begin, sums + 2 * end, 0.0);
     });
     std::vector<std::vector<SetAside>> aside(chunks.count());
-    for_blocks(chunks.count(), 1, run,
-               [&](std::size_t c, std::size_t, std::size_t) { aside[c] = run_chunk(kernel, pass, chunks, c); });
+    for_blocks(chunks.count(), 1, run, [&](std::size_t c, std::size_t, std::size_t) {
+        aside[c] = run_chunk(kernel, pass, faces, vertices.count, chunks, c);
+    });
     for (const auto& later : aside)
         for (const SetAside& s : later) {
             double* sum = sums + 2 * static_cast<std::size_t>(s.vertex);
@@ -80,11 +84,7 @@ void vertex_density(Points vertices, Triangles faces, Points unit_normals, doubl
                     const Execution& run) {
     fused_pass(vertices, faces, unit_normals, density_and_area, nullptr, nullptr, run);
     for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (double* v = density_and_area + 2 * begin; v != density_and_area + 2 * end; v += 2) {
-            const double twice_area = v[1], quotient = v[0] / twice_area;
-            v[0] = twice_area > 0 ? quotient : std::numeric_limits<double>::quiet_NaN();
-            v[1] = 0.5 * twice_area;
-        }
+        best_kernel().divide(density_and_area + 2 * begin, end - begin);
     });
 }
 

@@ -27,10 +27,17 @@ struct FusedPass {
     mutable SetAside* aside;  // room for 3 a face; moved on
 };
 
-/// Faces [begin, end) in ascending order.
-using FusedKernel = void (*)(FusedPass&, std::size_t begin, std::size_t end);
-void fused_kernel_baseline(FusedPass&, std::size_t begin, std::size_t end);
-void fused_kernel_avx2(FusedPass&, std::size_t begin, std::size_t end);
+/// The loops over the arrays of a mesh, compiled for one instruction set.
+struct FusedKernel {
+    /// Faces [begin, end) in ascending order.
+    void (*faces)(FusedPass&, std::size_t begin, std::size_t end);
+    /// The highest of `count` indices, read as unsigned: a negative one is beyond any number of vertices.
+    std::uint32_t (*highest)(const std::int32_t* indices, std::size_t count);
+    /// Sums of `count` vertices become density (NaN where undefined) and area, in place.
+    void (*divide)(double* sums, std::size_t count);
+};
+extern const FusedKernel fused_kernel_baseline;
+extern const FusedKernel fused_kernel_avx2;
 
 /// Sums for all vertices (2 each, room given), and kappa and density of every face unless null.
 /// \throw std::invalid_argument at an index outside the vertices.

@@ -2,8 +2,6 @@
 
 namespace gaussmap {
 
-void fused_kernel_avx2(FusedPass& pass, std::size_t begin, std::size_t end) {
-    run<4>(pass, begin, end);
-}
+const FusedKernel fused_kernel_avx2 = {run<4>, highest, divide};
 
 }  // namespace gaussmap

@@ -2,8 +2,6 @@
 
 namespace gaussmap {
 
-void fused_kernel_baseline(FusedPass& pass, std::size_t begin, std::size_t end) {
-    run<2>(pass, begin, end);
-}
+const FusedKernel fused_kernel_baseline = {run<2>, highest, divide};
 
 }  // namespace gaussmap

@@ -194,6 +194,34 @@ inline void run(FusedPass& pass, std::size_t begin, std::size_t end) {
     pass.aside = pass.owner ? run<W, false>(pass, begin, end) : run<W, true>(pass, begin, end);
 }
 
+inline std::uint32_t highest(const std::int32_t* indices, std::size_t count) {
+    std::uint32_t result = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto index = static_cast<std::uint32_t>(indices[i]);
+        result = index > result ? index : result;
+    }
+    return result;
+}
+
+// S / 2A over 2A where there is any, and 2A / 2.
+inline void divide(double* sums, std::size_t count) {
+    const Pair undefined = {__builtin_nan(""), __builtin_nan("")};
+    auto* pairs = reinterpret_cast<PairInMemory*>(sums);
+    std::size_t v = 0;
+    for (; v + 2 <= count; v += 2) {
+        const Pair one = pairs[v], two = pairs[v + 1];
+        const Pair energy = __builtin_shufflevector(one, two, 0, 2), area = __builtin_shufflevector(one, two, 1, 3);
+        const Pair quotient = energy / area;
+        const Pair density = area > Pair{} ? quotient : undefined, half = 0.5 * area;
+        pairs[v] = __builtin_shufflevector(density, half, 0, 2);
+        pairs[v + 1] = __builtin_shufflevector(density, half, 1, 3);
+    }
+    if (v == count) return;
+    const double quotient = sums[2 * v] / sums[2 * v + 1];
+    sums[2 * v] = sums[2 * v + 1] > 0 ? quotient : undefined[0];
+    sums[2 * v + 1] *= 0.5;
+}
+
 #undef GAUSSMAP_INLINE
 
 }  // namespace
