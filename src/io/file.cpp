@@ -44,34 +44,34 @@ std::string reason(int error) {
 }
 
 [[noreturn]] void cannot_read(const std::string& path, int error) {
-    const char* todo = error == ENOENT ? "; check the path" : error == EACCES ? "; check its permissions" : "";
-    throw FormatError(path + ": cannot read: " + reason(error) + todo);
+    const char* advice = error == ENOENT ? "; check the path" : error == EACCES ? "; check its permissions" : "";
+    throw FormatError(path + ": cannot read: " + reason(error) + advice);
 }
 
 [[noreturn]] void cannot_write(const std::string& path, int error) {
-    const char* todo = "";
+    const char* advice = "";
     switch (error) {
         case ENOSPC:
         case EDQUOT:
         case EFBIG:
-            todo = "; make room or write to another place";
+            advice = "; make room or write to another place";
             break;
         case ENOENT:
         case ENOTDIR:
-            todo = "; make the folder first";
+            advice = "; make the folder first";
             break;
         case EISDIR:
-            todo = "; give the name of a file";
+            advice = "; give the name of a file";
             break;
         case EACCES:
         case EPERM:
         case EROFS:
-            todo = "; choose a place you may write to";
+            advice = "; choose a place you may write to";
             break;
         default:
             break;
     }
-    throw std::runtime_error(path + ": cannot write: " + reason(error) + todo);
+    throw std::runtime_error(path + ": cannot write: " + reason(error) + advice);
 }
 
 std::string read_to_end(int fd, const std::string& path) {

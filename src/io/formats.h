@@ -15,9 +15,9 @@ struct Source {
     const Execution& run;
 };
 
-/// Throw FormatError "NAME: where: what; what to do" (`where` and `todo` may be empty and are then left out).
+/// Throw FormatError "NAME: where: what; what to do" (`where` and `advice` may be empty and are then left out).
 [[noreturn]] void fail(const Source& source, const std::string& where, const std::string& what,
-                       const std::string& todo = "");
+                       const std::string& advice = "");
 
 Geometry read_ply(const Source& source);
 Geometry read_obj(const Source& source);

@@ -12,11 +12,11 @@ namespace gaussmap {
 
 namespace io {
 
-void fail(const Source& source, const std::string& where, const std::string& what, const std::string& todo) {
+void fail(const Source& source, const std::string& where, const std::string& what, const std::string& advice) {
     std::string message = source.name + ": ";
     if (!where.empty()) message += where + ": ";
     message += what;
-    if (!todo.empty()) message += "; " + todo;
+    if (!advice.empty()) message += "; " + advice;
     throw FormatError(message);
 }
 
@@ -26,7 +26,7 @@ namespace {
 struct Foreign {
     std::string_view magic;
     const char* what;
-    const char* todo;
+    const char* advice;
 };
 constexpr const char* convert_it = "convert it to one of ";
 constexpr std::array<Foreign, 12> foreign = {
@@ -105,9 +105,9 @@ bool begins_with_numbers(std::string_view bytes) {
 Format detect(const Source& source) {
     const Format certain = format_by_content(source.bytes);
     if (certain != Format::detect) return certain;
-    for (const auto& [magic, what, todo] : foreign) {
+    for (const auto& [magic, what, advice] : foreign) {
         if (source.bytes.starts_with(magic))
-            fail(source, "", std::string(what) + ", which is not read", todo + known_extensions());
+            fail(source, "", std::string(what) + ", which is not read", advice + known_extensions());
     }
     const Format by_name = format_of(source.name);
     if (by_name != Format::detect) return by_name;
