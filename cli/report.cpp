@@ -102,6 +102,12 @@ std::string Table::text() const {
     return out;
 }
 
+void add_ending(Table& table, const Json& report) {
+    table.add("time", fmt::format("{:.3g} s, peak memory {}", report["seconds"]["total"].get<double>(),
+                                  bytes(report["peak_bytes"].get<std::size_t>())));
+    for (const Json& path : report["outputs"]) table.add("wrote", path.get<std::string>());
+}
+
 void present(const Json& report, const std::string& title, const Table& table, const Common& common) {
     if (common.json) {
         // A name or a comment of a file may be no UTF-8; what cannot be shown is replaced.

@@ -51,6 +51,9 @@ class Table {
     std::vector<std::pair<std::string, std::string>> rows_;
 };
 
+/// The rows that end a report on a file: time and memory, and what was written.
+void add_ending(Table& table, const Json& report);
+
 /// The last of every verb: the JSON on standard output, or the text on standard error, with the notes of the report.
 void present(const Json& report, const std::string& title, const Table& table, const Common& common);
 

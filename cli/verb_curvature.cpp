@@ -293,9 +293,7 @@ Table table_of(const Json& report) {
                                        (*truth)["property"].get<std::string>(), number((*truth)["rmse"]),
                                        number((*truth)["relative_rmse"]), number((*truth)["median_relative_error"]),
                                        count((*truth)["compared"].get<std::size_t>(), one, many)));
-    table.add("time", fmt::format("{:.3g} s, peak memory {}", report["seconds"]["total"].get<double>(),
-                                  bytes(n("peak_bytes"))));
-    for (const Json& path : report["outputs"]) table.add("wrote", path.get<std::string>());
+    add_ending(table, report);
     return table;
 }
 

@@ -115,9 +115,7 @@ Table table_of(const Json& report) {
         table.add("lower degree", n("lowered"));
     }
     table.add("undefined", n("undefined"));
-    table.add("time", fmt::format("{:.3g} s, peak memory {}", report["seconds"]["total"].get<double>(),
-                                  bytes(report["peak_bytes"].get<std::size_t>())));
-    for (const Json& path : report["outputs"]) table.add("wrote", path.get<std::string>());
+    add_ending(table, report);
     return table;
 }
 

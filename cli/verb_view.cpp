@@ -176,9 +176,7 @@ Table table_of(const Json& report) {
     table.add("undefined", count(report["undefined"].get<std::size_t>(), "value", "values"));
     table.add("picture", fmt::format("{} × {} pixels, {}", report["width"].get<int>(), report["height"].get<int>(),
                                      count(report["views"].get<std::size_t>(), "view", "views")));
-    table.add("time", fmt::format("{:.3g} s, peak memory {}", report["seconds"]["total"].get<double>(),
-                                  bytes(report["peak_bytes"].get<std::size_t>())));
-    for (const Json& path : report["outputs"]) table.add("wrote", path.get<std::string>());
+    add_ending(table, report);
     return table;
 }
 

@@ -9,11 +9,15 @@
 
 namespace gaussmap {
 
+/// Indices below this are right: read as unsigned, a negative index is a large one and beyond any number of vertices.
+inline std::uint32_t index_limit(std::size_t vertices) {
+    return static_cast<std::uint32_t>(std::min<std::size_t>(vertices, 0x80000000u));
+}
+
 /// Whether every index of faces [begin, end) lies in [0, vertices).
 inline bool faces_within(Triangles faces, std::size_t begin, std::size_t end, std::size_t vertices) {
-    // Read as unsigned, a negative index is a large one: one comparison a value, and no branch that keeps the loop
-    // scalar.
-    const auto limit = static_cast<std::uint32_t>(std::min<std::size_t>(vertices, 0x80000000u));
+    // One comparison a value, and no branch that keeps the loop scalar.
+    const std::uint32_t limit = index_limit(vertices);
     std::uint32_t bad = 0;
     for (std::size_t i = 3 * begin; i < 3 * end; ++i)
         bad |= static_cast<std::uint32_t>(faces.abc[i]) >= limit ? 1u : 0u;

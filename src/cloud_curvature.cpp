@@ -1,6 +1,5 @@
 // Total curvature of point clouds: the Dirichlet energy of the normals over each point's Delaunay fan.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 
 #include "check.h"
 #include "check_cloud.h"
+#include "clock.h"
 #include "degenerate.h"
 #include "fan.h"
 #include "frame.h"
@@ -20,11 +20,6 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 struct Energy {
     double kappa = 0, area = 0;

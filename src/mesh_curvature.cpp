@@ -1,10 +1,9 @@
 // Total curvature of a mesh: normals where none are given, the fused pass, and what happened.
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "check.h"
+#include "clock.h"
 #include "corrected_curvature.h"
 #include "gaussmap/curvature.h"
 #include "normalize.h"
@@ -13,10 +12,6 @@
 
 namespace gaussmap {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The counts over faces, and the sum of kappa in the order of the faces.
 void count_faces(MeshCurvature& result) {
@@ -39,7 +34,7 @@ void count_faces(MeshCurvature& result) {
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, const MeshCurvatureOptions& options) {
     if (!normals.empty()) check_count("normals", normals.count, vertices.count, "vertices");
     MeshCurvature result;
-    auto start = std::chrono::steady_clock::now();
+    auto start = Clock::now();
     if (normals.empty()) {
         result.normals = mesh_normals(vertices, faces, options.weights, part_of(options.run, 0, 0.5));
     } else {
@@ -48,7 +43,7 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     }
     result.seconds_normals = seconds_since(start);
 
-    start = std::chrono::steady_clock::now();
+    start = Clock::now();
     const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);
     result.face_density.resize(faces.count);
@@ -58,11 +53,9 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     if (options.estimator == Estimator::corrected) {
         result.density = corrected_density(vertices, faces, result.normals, {options.run.threads, {}});
     } else {
+        divide_sums(sums.get(), vertices.count, options.run);
         result.density.resize(vertices.count);
-        for (std::size_t v = 0; v < vertices.count; ++v) {
-            const double quotient = sums[2 * v] / sums[2 * v + 1];
-            result.density[v] = sums[2 * v + 1] > 0 ? quotient : std::numeric_limits<double>::quiet_NaN();
-        }
+        for (std::size_t v = 0; v < vertices.count; ++v) result.density[v] = sums[2 * v];
     }
     for (const double d : result.density) result.undefined += std::isnan(d);
     result.seconds_curvature = seconds_since(start);

@@ -2,8 +2,6 @@
 #include "vertex_density.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "check.h"
 #include "first_touch.h"
@@ -59,7 +57,7 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
         };
         for_blocks(faces.count, stretch, {1, run.progress}, [&](std::size_t, std::size_t begin, std::size_t end) {
             const std::size_t highest = kernel.highest(faces[begin], 3 * (end - begin));
-            if (highest >= std::min<std::size_t>(vertices.count, 0x80000000u)) check_faces(faces, vertices.count);
+            if (highest >= index_limit(vertices.count)) check_faces(faces, vertices.count);
             clear_to(highest + 1);
             kernel.faces(pass, begin, end);
         });
@@ -80,12 +78,16 @@ void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* s
         }
 }
 
+void divide_sums(double* sums, std::size_t vertices, const Execution& run) {
+    for_blocks(vertices, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
+        best_kernel().divide(sums + 2 * begin, end - begin);
+    });
+}
+
 void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density_and_area,
                     const Execution& run) {
     fused_pass(vertices, faces, unit_normals, density_and_area, nullptr, nullptr, run);
-    for_blocks(vertices.count, vertex_block, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
-        best_kernel().divide(density_and_area + 2 * begin, end - begin);
-    });
+    divide_sums(density_and_area, vertices.count, run);
 }
 
 }  // namespace gaussmap

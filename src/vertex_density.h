@@ -44,4 +44,7 @@ extern const FusedKernel fused_kernel_avx2;
 void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
                 double* face_density, const Execution& run);
 
+/// The sums of the vertices become density (NaN where undefined) and area, in place.
+void divide_sums(double* sums, std::size_t vertices, const Execution& run);
+
 }  // namespace gaussmap
