@@ -10,10 +10,12 @@
 #include "check_cloud.h"
 #include "clock.h"
 #include "degenerate.h"
+#include "estimators.h"
 #include "fan.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
 #include "parallel.h"
+#include "shape_operator.h"
 
 namespace gaussmap {
 namespace {
@@ -91,6 +93,8 @@ void measure(const DistinctPoints& cloud, const Neighbors& neighbors, const std:
             if (fan.triangles() > 0 && !fan.closed) ++boundary_in[block];
             const Energy energy = fan_energy(neighborhood, fan, normals.data(), normal, align);
             if (!(energy.area > 0)) continue;
+            if (!result.tensor.k1.empty())
+                store(result.tensor, place, fan_tensor(neighborhood, fan, normals.data(), normal, align));
             result.kappa[place] = energy.kappa;
             result.density[place] = energy.kappa / energy.area * neighborhood.scale * neighborhood.scale;
         }
@@ -106,6 +110,7 @@ void share_with_copies(const DistinctPoints& cloud, CloudCurvature& result) {
         if (first == i) continue;
         result.density[i] = result.density[first];
         result.kappa[i] = result.kappa[first];
+        if (!result.tensor.k1.empty()) copy(result.tensor, first, i);
         store(result.normals.data() + 3 * i, load(result.normals.data() + 3 * first));
     }
 }
@@ -113,6 +118,7 @@ void share_with_copies(const DistinctPoints& cloud, CloudCurvature& result) {
 }  // namespace
 
 CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
+    check_estimator(options.estimator, Input::cloud, options.confidence);
     if (options.k < 3)
         throw std::invalid_argument("k = " + std::to_string(options.k) +
                                     " is too small; a fan takes at least 3 neighbours");
@@ -148,6 +154,7 @@ CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatu
     result.density.assign(points.count, nan);
     result.kappa.assign(points.count, nan);
     result.normals.assign(3 * points.count, nan);
+    if (options.tensor) result.tensor = undefined_tensor(points.count);
     const bool align = estimate && options.orientation == Orientation::local;
     measure(cloud, neighbors, unit_normals, align, part_of(options.run, 0.8, 1), result);
     share_with_copies(cloud, result);

@@ -5,9 +5,11 @@
 #include "check.h"
 #include "clock.h"
 #include "corrected_curvature.h"
+#include "estimators.h"
 #include "gaussmap/curvature.h"
 #include "normalize.h"
 #include "parallel.h"
+#include "shape_operator.h"
 #include "vertex_density.h"
 
 namespace gaussmap {
@@ -32,6 +34,7 @@ void count_faces(MeshCurvature& result) {
 }  // namespace
 
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, const MeshCurvatureOptions& options) {
+    check_estimator(options.estimator, Input::mesh, options.confidence);
     if (!normals.empty()) check_count("normals", normals.count, vertices.count, "vertices");
     MeshCurvature result;
     auto start = Clock::now();
@@ -48,7 +51,7 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     result.kappa.resize(faces.count);
     result.face_density.resize(faces.count);
     fused_pass(vertices, faces, result.normals, sums.get(), result.kappa.data(), result.face_density.data(),
-               part_of(options.run, 0.5, 1));
+               part_of(options.run, 0.5, options.tensor ? 0.7 : 1));
     count_faces(result);
     if (options.estimator == Estimator::corrected) {
         result.density = corrected_density(vertices, faces, result.normals, {options.run.threads, {}});
@@ -56,6 +59,10 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
         divide_sums(sums.get(), vertices.count, options.run);
         result.density.resize(vertices.count);
         for (std::size_t v = 0; v < vertices.count; ++v) result.density[v] = sums[2 * v];
+    }
+    if (options.tensor) {
+        result.vertex_tensor = vertex_tensor(vertices, faces, result.normals, part_of(options.run, 0.7, 0.9));
+        result.face_tensor = face_tensor(vertices, faces, result.normals, part_of(options.run, 0.9, 1));
     }
     for (const double d : result.density) result.undefined += std::isnan(d);
     result.seconds_curvature = seconds_since(start);

@@ -4,8 +4,10 @@
 // SIGGRAPH 2023 Talks (arXiv 2305.12653). Equation numbers refer to docs/method.md.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 #include "gaussmap/normals.h"
@@ -13,28 +15,76 @@
 
 namespace gaussmap {
 
-/// How curvature is read off a mesh.
+/// How curvature is read off a mesh or a cloud.
 enum class Estimator {
+    /// Chooses for each vertex or point from the data, without a parameter; what it took is in `choice`.
+    automatic,
     /// Dirichlet energy of the normals (the paper): needs normals, makes `kappa` and densities.
     dirichlet,
-    /// Interpolated corrected curvature measures over the one-ring: (Σμ1/Σμ0)² − 2 Σμ2/Σμ0, clamped at 0.
+    /// Meshes. Interpolated corrected curvature measures over the one-ring: (Σμ1/Σμ0)² − 2 Σμ2/Σμ0, clamped at 0.
     /// Lachaud, Romon, Thibert, Coeurjolly, "Interpolated corrected curvature measures for polygonal
     /// surfaces", SGP 2020, and the 2022 stability results. `kappa` stays the Dirichlet energy.
     corrected,
+    /// Least squares of the neighbours' normal differences: the shape operator of the neighbourhood.
+    regression,
+    /// Curvature of a fitted polynomial.
+    jet,
 };
+
+/// "auto", "dirichlet", "corrected", "regression", "jet".
+const char* estimator_name(Estimator estimator);
+
+/// What a value of `choice` stands for, in a word or two: "dirichlet", "jet 4"; "none" for 0, where nothing was
+/// defined. \throw std::invalid_argument on a value that is never written.
+const char* choice_name(std::uint8_t choice);
+
+/// Principal curvatures and directions: the shape operator dn/dx of each element, diagonalised. k1 ≥ k2, and a sphere
+/// with outward normals has k1 = k2 = 1/r > 0. The sign follows the normals, so it means something where these are
+/// oriented; turned round they give −k2, −k1.
+struct PrincipalCurvatures {
+    std::vector<double> k1, k2;     ///< one each an element, 1/length; NaN where undefined
+    std::vector<double> direction;  ///< unit direction of k1, 3 an element, of its two signs the one that looks up (z >
+                                    ///< 0, else y, else x); any tangent where k1 = k2. normal × direction is that of k2
+};
+
+/// H = (k1 + k2) / 2, 1/length: 1/r on a sphere with outward normals, 0 on a minimal surface.
+inline double mean_curvature(double k1, double k2) {
+    return 0.5 * (k1 + k2);
+}
+/// K = k1 k2, 1/length²: positive on caps and cups, negative on saddles, whichever way the normals look.
+inline double gaussian_curvature(double k1, double k2) {
+    return k1 * k2;
+}
+/// 2/π · atan((k1 + k2) / (k1 − k2)) in [−1, 1] for k1 ≥ k2, no unit: 1 a cap (of a sphere with outward normals), ½ a
+/// ridge, 0 a symmetric saddle, −½ a rut, −1 a cup; NaN on a flat point, which has no shape.
+/// Koenderink and van Doorn, "Surface shape and curvature scales", Image and Vision Computing 10(8), 1992 (up to the
+/// sign, which follows the normal there too).
+inline double shape_index(double k1, double k2) {
+    return 2 / std::numbers::pi * std::atan((k1 + k2) / (k1 - k2));
+}
+/// √((k1² + k2²) / 2), 1/length: how strongly the surface bends, 1/r on a sphere. Koenderink and van Doorn 1992.
+inline double curvedness(double k1, double k2) {
+    return std::sqrt(0.5 * (k1 * k1 + k2 * k2));
+}
 
 struct MeshCurvatureOptions {
     Estimator estimator = Estimator::dirichlet;
     /// How vertex normals are made when none are given.
     NormalWeights weights = NormalWeights::max;
+    bool tensor = false;      ///< make vertex_tensor and face_tensor
+    bool confidence = false;  ///< make `error`; not for dirichlet and corrected, which have no residuals
     Execution run;
 };
 
 struct MeshCurvature {
-    std::vector<double> density;       ///< a vertex, 1/length²; NaN where undefined
-    std::vector<double> kappa;         ///< a face, no unit (scale invariant); NaN where undefined
-    std::vector<double> face_density;  ///< a face, kappa / area, 1/length²; NaN where undefined or of no area
-    std::vector<double> normals;       ///< the unit vertex normals used, 3 a vertex; NaN where undefined
+    std::vector<double> density;        ///< a vertex, 1/length²; NaN where undefined
+    std::vector<double> kappa;          ///< a face, no unit (scale invariant); NaN where undefined
+    std::vector<double> face_density;   ///< a face, kappa / area, 1/length²; NaN where undefined or of no area
+    std::vector<double> normals;        ///< the unit vertex normals used, 3 a vertex; NaN where undefined
+    PrincipalCurvatures vertex_tensor;  ///< a vertex; empty unless asked for
+    PrincipalCurvatures face_tensor;    ///< a face, in its plane, from its three normals; empty unless asked for
+    std::vector<double> error;  ///< a vertex, the standard error of its density, 1/length²; empty unless asked for
+    std::vector<std::uint8_t> choice;  ///< a vertex, what `automatic` took (`choice_name`); empty for other estimators
     double kappa_sum = 0;              ///< sum of the defined kappa: the integral of k1² + k2² over the surface
     std::size_t undefined = 0;         ///< vertices whose density is NaN (no usable face)
     std::size_t undefined_faces = 0;   ///< faces whose kappa is NaN (a non-finite corner or an undefined normal)
@@ -49,9 +99,9 @@ struct MeshCurvature {
 /// \param faces     m index triples; any connectivity (open, non-manifold, duplicated, degenerate).
 /// \param normals   n vectors of any positive length, or empty to estimate them (`options.weights`).
 /// \throw std::invalid_argument naming the array, index and value: an index outside [0, n),
-///        or a number of normals that is neither 0 nor n.
-/// Time O(n + m); memory 48 bytes a vertex and 16 a face beyond the input.
-/// Source: the paper, eq. (3) of docs/method.md; normals by Max 1999 unless given.
+///        or a number of normals that is neither 0 nor n; confidence of an estimator that has none.
+/// Time O(n + m); memory 48 bytes a vertex and 16 a face beyond the input; with the tensor 72 and 40 more.
+/// Source: the paper, eq. (3) of docs/method.md; normals by Max 1999 unless given; the shape operator by eq. (9), (10).
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals = {},
                              const MeshCurvatureOptions& options = {});
 
@@ -64,6 +114,7 @@ void vertex_density(Points vertices, Triangles faces, Points unit_normals, doubl
                     const Execution& run = {});
 
 struct CloudCurvatureOptions {
+    Estimator estimator = Estimator::dirichlet;
     /// Neighbours a point, at least 3. Points at one same position count once.
     int k = 20;
     /// How normals are made when none are given.
@@ -73,6 +124,8 @@ struct CloudCurvatureOptions {
     /// How the normals of a neighbourhood are brought to agree. Given normals are never touched:
     /// this is for estimated ones.
     Orientation orientation = Orientation::local;
+    bool tensor = false;      ///< make `tensor` of the result
+    bool confidence = false;  ///< make `error`; not for dirichlet, which has no residuals
     Execution run;
 };
 
@@ -80,11 +133,14 @@ struct CloudCurvature {
     std::vector<double> density;  ///< a point, 1/length²; NaN where undefined
     std::vector<double> kappa;    ///< a point, sum over its fan, no unit; NaN where undefined
     std::vector<double> normals;  ///< the unit normals used, 3 a point; NaN where undefined
-    std::size_t undefined = 0;    ///< points whose density is NaN
-    std::size_t duplicates = 0;   ///< points at the position of an earlier one (they share its result)
-    std::size_t non_finite = 0;   ///< points with a NaN or infinite coordinate
-    std::size_t boundary = 0;     ///< points whose fan is open; copies count once
-    std::size_t lowered = 0;      ///< points whose jet had to take a lower degree than asked for; copies count once
+    PrincipalCurvatures tensor;   ///< a point, signed by its own normal; empty unless asked for
+    std::vector<double> error;    ///< a point, the standard error of its density, 1/length²; empty unless asked for
+    std::vector<std::uint8_t> choice;  ///< a point, what `automatic` took (`choice_name`); empty for other estimators
+    std::size_t undefined = 0;         ///< points whose density is NaN
+    std::size_t duplicates = 0;        ///< points at the position of an earlier one (they share its result)
+    std::size_t non_finite = 0;        ///< points with a NaN or infinite coordinate
+    std::size_t boundary = 0;          ///< points whose fan is open; copies count once
+    std::size_t lowered = 0;  ///< points whose jet had to take a lower degree than asked for; copies count once
     double seconds_neighbors = 0;
     double seconds_normals = 0;
     double seconds_curvature = 0;
@@ -94,9 +150,9 @@ struct CloudCurvature {
 ///
 /// \param points   n points; non-finite ones are undefined and nobody's neighbour.
 /// \param normals  n vectors of any positive length, or empty to estimate them.
-/// \throw std::invalid_argument: k < 3, a degree outside 1…4, more than 2³¹ points, or a number of
-///        normals that is neither 0 nor n.
-/// Time O(n (log n + k log k)); memory about 4k + 110 bytes a point beyond the input.
+/// \throw std::invalid_argument: k < 3, a degree outside 1…4, more than 2³¹ points, a number of
+///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
+/// Time O(n (log n + k log k)); memory about 4k + 110 bytes a point beyond the input; with the tensor 40 more.
 /// Source: the paper; fan by inversion, eq. (7) of docs/method.md.
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
 
