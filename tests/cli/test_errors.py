@@ -56,12 +56,12 @@ USAGE = [
         "--normals: 'maxx' is not one of auto, file, estimate, area, angle, max, pca, jet; did you mean 'max'?",
     ),
     (
-        "curvature cube.off --estimator regression",
-        "--estimator: 'regression' is not one of auto, dirichlet, corrected",
+        "curvature cube.off --estimator lepski",
+        "--estimator: 'lepski' is not one of auto, dirichlet, corrected, regression, jet",
     ),
     (
         "curvature cube.off --estimator dirchlet",
-        "--estimator: 'dirchlet' is not one of auto, dirichlet, corrected; did you mean 'dirichlet'?",
+        "--estimator: 'dirchlet' is not one of auto, dirichlet, corrected, regression, jet; did you mean 'dirichlet'?",
     ),
     ("curvature cube.off --as meshes", "--as: 'meshes' is not one of auto, mesh, cloud; did you mean 'mesh'?"),
     ("curvature cloud.xyz --orient mts", "--orient: 'mts' is not one of local, mst, none; did you mean 'mst'?"),
@@ -81,7 +81,20 @@ USAGE = [
     ),
     (
         "curvature cube.off --as cloud --estimator corrected",
-        "--estimator corrected is for meshes and cube.off is taken as a cloud; use auto or dirichlet",
+        "--estimator corrected is for meshes and cube.off is taken as a cloud; use auto, dirichlet, "
+        "regression or jet",
+    ),
+    *[
+        (
+            f"curvature {name} --confidence --estimator {estimator}",
+            f"--confidence comes from the residuals of a fit, and --estimator {estimator} fits nothing; use --estimator "
+            "auto, regression or jet",
+        )
+        for name, estimator in (("cube.off", "dirichlet"), ("cube.off", "corrected"), ("cloud.xyz", "dirichlet"))
+    ],
+    (
+        "curvature cube.off --choice --estimator corrected",
+        "--choice is what --estimator auto took, and the estimator is corrected; use --estimator auto",
     ),
     (
         "normals cube.off --method jet -o n.ply",

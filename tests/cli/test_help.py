@@ -8,7 +8,8 @@ import pytest
 
 VERBS = ["curvature", "normals", "shape", "view", "convert", "info"]
 OPTIONS = {
-    "curvature": "--as --normals --estimator --k --degree --orient --truth --color --output --format --ascii",
+    "curvature": "--as --normals --estimator --k --degree --orient --tensor --confidence --choice --truth "
+    "--color --output --format --ascii",
     "normals": "--as --method --k --degree --orient --output --format --ascii",
     "shape": "--subdivisions --radius --major --minor --grid --p --q --scale --axes --amplitude --frequency "
     "--wavelength --width --depth --height --jitter --noise --output --format --ascii",

@@ -1,0 +1,151 @@
+#include "curvature_plan.h"
+
+#include <fmt/format.h>
+
+namespace cli {
+namespace {
+
+using gaussmap::Estimator;
+
+constexpr Estimator estimators[] = {Estimator::automatic, Estimator::dirichlet, Estimator::corrected,
+                                    Estimator::regression, Estimator::jet};
+
+/// Options that the other kind alone understands. \throw Failure (wrong usage)
+void refuse_other_kind(const CurvatureOptions& o, bool mesh) {
+    const bool for_meshes = o.normals == "max" || o.normals == "angle" || o.normals == "area";
+    const bool for_clouds = o.normals == "pca" || o.normals == "jet";
+    if (mesh && for_clouds)
+        throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for clouds and {} is a mesh; use auto, file, "
+                                                     "estimate, max, angle or area, or --as cloud",
+                                                     o.normals, o.input));
+    if (!mesh && for_meshes)
+        throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for meshes and {} is taken as a cloud; use auto, "
+                                                     "file, estimate, pca or jet",
+                                                     o.normals, o.input));
+    if (!mesh && o.estimator == "corrected")
+        throw Failure(Exit::wrong_usage, fmt::format("--estimator corrected is for meshes and {} is taken as a cloud; "
+                                                     "use auto, dirichlet, regression or jet",
+                                                     o.input));
+}
+
+/// What only some estimators have. \throw Failure (wrong usage)
+void refuse_what_estimator_lacks(const CurvatureOptions& o, Estimator estimator) {
+    const char* name = gaussmap::estimator_name(estimator);
+    if (o.confidence && (estimator == Estimator::dirichlet || estimator == Estimator::corrected))
+        throw Failure(Exit::wrong_usage,
+                      fmt::format("--confidence comes from the residuals of a fit, and --estimator {} "
+                                  "fits nothing; use --estimator auto, regression or jet",
+                                  name));
+    if (o.choice && estimator != Estimator::automatic)
+        throw Failure(
+            Exit::wrong_usage,
+            fmt::format("--choice is what --estimator auto took, and the estimator is {}; use --estimator auto", name));
+}
+
+void plan_mesh(const CurvatureOptions& o, CurvaturePlan& plan) {
+    using gaussmap::NormalWeights;
+    const bool chosen = o.normals == "angle" || o.normals == "area";
+    plan.normals = chosen ? o.normals : "max";
+    plan.of_mesh.weights = o.normals == "angle"  ? NormalWeights::angle
+                           : o.normals == "area" ? NormalWeights::area
+                                                 : NormalWeights::max;
+}
+
+void plan_cloud(const CurvatureOptions& o, CurvaturePlan& plan) {
+    using gaussmap::Orientation;
+    plan.of_cloud.k = o.k;
+    plan.of_cloud.method = o.normals == "pca" ? gaussmap::CloudNormals::pca : gaussmap::CloudNormals::jet;
+    plan.of_cloud.degree = o.degree != 0 ? o.degree : o.normals == "jet" ? 2 : 4;
+    plan.of_cloud.orientation = o.orient == "mst"    ? Orientation::mst
+                                : o.orient == "none" ? Orientation::none
+                                                     : Orientation::local;
+    plan.normals = o.normals == "pca" ? "pca" : fmt::format("jet {}", plan.of_cloud.degree);
+}
+
+}  // namespace
+
+void CurvatureOptions::declare(CommandLine& line) {
+    line.input(input, "IN", "A mesh or a cloud: " + gaussmap::known_extensions() + "; - is standard input");
+    line.group("Method");
+    line.option("--as", as, "KIND",
+                "auto, mesh or cloud. auto: a mesh if the file has faces. cloud takes the vertices of a mesh as a "
+                "cloud (default: auto)")
+        ->check(one_of({"auto", "mesh", "cloud"}));
+    line.option("--normals", normals, "N",
+                "auto: those of the file if it has any, else estimate\n"
+                "file: those of the file\n"
+                "estimate: meshes max, clouds jet of degree 4\n"
+                "max, angle, area: meshes; weights of the faces around a vertex\n"
+                "pca, jet: clouds; a fitted plane, a fitted polynomial (default: auto)")
+        ->check(one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "jet"}));
+    line.option("--estimator", estimator, "E",
+                "dirichlet: energy of the normals (Chen 2023)\n"
+                "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
+                "regression: least squares of the differences of neighbours' normals\n"
+                "jet: curvature of a fitted polynomial\n"
+                "auto: what suits each vertex or point best (default: dirichlet)")
+        ->check(one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
+    line.group("Clouds");
+    line.option("--k", k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)")->check(whole_number(3, 1000));
+    line.option("--degree", degree, "N", "Degree of the jet, 1 to 4 (default: 2 for --normals jet, 4 for estimate)")
+        ->check(whole_number(1, 4));
+    line.option("--orient", orient, "O",
+                "How estimated normals are made to agree. local: around each point\n"
+                "mst: along a spanning tree of the whole cloud\n"
+                "none: not at all (default: local)")
+        ->check(one_of({"local", "mst", "none"}));
+    line.group("Also");
+    line.flag("--tensor", tensor,
+              "Principal curvatures and directions: k1 ≥ k2 (1/length), positive where the surface bends away from its "
+              "normal, d1x d1y d1z (direction of k1), mean, gaussian, shape_index and curvedness");
+    line.flag("--confidence", confidence,
+              "density_error: the standard error of each density (estimators auto, regression and jet)");
+    line.flag("--choice", choice, "choice: what --estimator auto took for each vertex or point");
+    line.group("Report");
+    line.option("--truth", truth, "PROPERTY",
+                "Compare the densities with this property of the input's vertices, and report the errors");
+    outputs.pictures = true;
+    outputs.declare(line, false);
+    line.flag("--color", color,
+              "Add red, green, blue: dark at density 0, bright from the 98th percentile on, grey where undefined");
+}
+
+CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line, const gaussmap::Geometry& geometry) {
+    CurvaturePlan plan;
+    plan.mesh = taken_as_mesh(o.as, geometry, o.input);
+    refuse_other_kind(o, plan.mesh);
+    for (const Estimator estimator : estimators)
+        if (o.estimator == gaussmap::estimator_name(estimator))
+            plan.of_mesh.estimator = plan.of_cloud.estimator = estimator;
+    refuse_what_estimator_lacks(o, plan.estimator());
+    plan.of_mesh.tensor = plan.of_cloud.tensor = o.tensor;
+    plan.of_mesh.confidence = plan.of_cloud.confidence = o.confidence;
+    const bool usable = has_normals(geometry);
+    if (o.normals == "file" && !usable)
+        throw Failure(
+            Exit::bad_input,
+            fmt::format("{}: {}; use --normals estimate", o.input,
+                        geometry.normals.empty() ? "has no normals" : "has normals, but all are zero or not finite"));
+    plan.file_normals = usable && (o.normals == "auto" || o.normals == "file");
+    if (plan.mesh)
+        plan_mesh(o, plan);
+    else
+        plan_cloud(o, plan);
+    if (plan.file_normals) plan.normals = "file";
+
+    const bool fitted = !plan.mesh && !plan.file_normals;
+    const auto unused = [&](const char* name, bool used, const char* why) {
+        if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
+    };
+    const char* why = plan.mesh ? "this is a mesh" : "the normals come from the file";
+    unused("--k", !plan.mesh, why);
+    unused("--orient", fitted, why);
+    unused("--degree", fitted && o.normals != "pca", fitted ? "a plane is fitted" : why);
+    if (o.tensor && fitted && o.orient != "mst")
+        plan.notes.push_back(
+            "each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
+            "need not agree from point to point; --orient mst makes them");
+    return plan;
+}
+
+}  // namespace cli
