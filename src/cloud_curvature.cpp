@@ -174,13 +174,13 @@ class BlockWork {
         if (fan_.triangles() == 0) return;
         if (!fan_.closed) ++block_.boundary;
         bool inside = true;
-        for (std::size_t c = 0; c < fan_.chain.size(); ++c) {
+        for (std::size_t c = 0; c < fan_.corners; ++c) {
             chain_[c] = around.index[static_cast<std::size_t>(fan_.chain[c])];
             const auto corner = static_cast<std::size_t>(chain_[c]);
             inside = inside && corner >= first_ && corner < last_;
         }
         const bool ready = work_.given || (inside && work_.options.orientation != Orientation::mst);
-        (ready ? ready_ : block_.waiting).add(i, fan_.closed, chain_.data(), fan_.chain.size());
+        (ready ? ready_ : block_.waiting).add(i, fan_.closed, chain_.data(), fan_.corners);
     }
 
     Work& work_;

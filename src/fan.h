@@ -9,27 +9,26 @@
 
 namespace gaussmap {
 
-/// Neighbours seen in the tangent plane, a quantity an array, and their order about the centre.
-struct Rays {
-    std::vector<double> u, v;        ///< the inverted projection, q/|q|²
-    std::vector<double> size;        ///< |u| + |v|
-    std::vector<double> squared;     ///< |q|² of the projection itself
-    std::vector<double> angle;       ///< grows with the polar angle from 0 to 4; beyond for what is passed over
-    std::vector<std::int32_t> turn;  ///< slots of the neighbourhood by ascending angle
-
-    explicit Rays(std::size_t k)
-        : u(padded(k)), v(u.size()), size(u.size()), squared(u.size()), angle(u.size()), turn(u.size()) {}
+/// A neighbour seen in the tangent plane.
+struct Ray {
+    double u, v;        ///< the inverted projection, q/|q|²
+    double size;        ///< |u| + |v|
+    double squared;     ///< |q|² of the projection itself
+    double angle;       ///< grows with the polar angle, from 0 to 4
+    std::int32_t slot;  ///< of the neighbourhood
 };
 
 /// A fan and the room to build it in; reused from point to point.
 struct Fan {
-    std::vector<std::int32_t> chain;  ///< slots of the neighbourhood, counterclockwise about the normal; triangles
-                                      ///< between consecutive ones
-    bool closed = false;              ///< and one between the last and the first
-    Rays rays;                        ///< scratch
+    std::vector<std::int32_t> chain;  ///< its first `corners` entries: slots of the neighbourhood, counterclockwise
+                                      ///< about the normal; triangles between consecutive ones
+    std::size_t corners = 0;
+    bool closed = false;             ///< and a triangle between the last and the first
+    std::vector<Ray> rays, turns;    ///< scratch: by slot and by angle
+    std::vector<std::int32_t> keys;  ///< scratch: what they are sorted by
 
-    explicit Fan(std::size_t k) : rays(k) { chain.reserve(k); }
-    std::size_t triangles() const { return chain.empty() ? 0 : chain.size() - (closed ? 0 : 1); }
+    explicit Fan(std::size_t k) : chain(k), rays(padded(k)), turns(rays.size()), keys(rays.size()) {}
+    std::size_t triangles() const { return corners == 0 ? 0 : corners - (closed ? 0 : 1); }
 };
 
 /// The triangles incident on the centre in the Delaunay triangulation of the centre and its projected neighbours: the

@@ -22,8 +22,8 @@ Fans fans(Points points, Points normals, const Neighbors& neighbors, const Execu
         for (; i < last; ++i) {
             neighborhood.gather(points, i, neighbors[i], neighbors.k);
             build_fan(neighborhood, unit(load(normals[i])), fan);
-            for (const std::int32_t slot : fan.chain) chains[block].push_back(neighborhood.index[slot]);
-            result.begin[i + 1] = fan.chain.size();
+            for (std::size_t c = 0; c < fan.corners; ++c) chains[block].push_back(neighborhood.index[fan.chain[c]]);
+            result.begin[i + 1] = fan.corners;
             result.closed[i] = fan.closed;
         }
     });
