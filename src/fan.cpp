@@ -16,22 +16,9 @@ constexpr double key_scale = 0x1p28;
 constexpr std::int32_t after_all = 0x7fffff00;
 constexpr std::size_t few = 64;
 
-/// Two doubles and four integers in a register, which any x86-64 compares at once.
-typedef double Two __attribute__((vector_size(16)));
-typedef double TwoInMemory __attribute__((vector_size(16), aligned(8), may_alias));
-typedef long long TwoMask __attribute__((vector_size(16)));
+/// Four integers in a register.
 typedef std::int32_t Keys __attribute__((vector_size(16)));
 typedef std::int32_t KeysInMemory __attribute__((vector_size(16), aligned(4), may_alias));
-
-Two load_two(const double* p) {
-    return *reinterpret_cast<const TwoInMemory*>(p);
-}
-Two absolute(Two a) {
-    return (Two)((TwoMask)a & 0x7fffffffffffffff);
-}
-Two select(TwoMask mask, Two yes, Two no) {
-    return (Two)((mask & (TwoMask)yes) | (~mask & (TwoMask)no));
-}
 
 /// Project, invert, and find the polar angles, without a trigonometric function; the number of rays that count.
 std::size_t project(const Neighborhood& neighborhood, const Frame& frame, Fan& fan) {

@@ -21,14 +21,16 @@ constexpr double normal_equations_tolerance = 1e-2;
 const Vec3 undefined = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
                         std::numeric_limits<double>::quiet_NaN()};
 
+constexpr Two one = {1, 1};
+
 /// The weights of the neighbours; the point itself weighs 1.
 struct Even {
-    GAUSSMAP_LANES Four operator()(const Four& /*squared*/) const { return Four{} + 1; }
+    GAUSSMAP_LANES Four operator()(Four /*squared*/) const { return {one, one}; }
 };
 struct Smooth {
     double over_h_squared;
-    GAUSSMAP_LANES Four operator()(const Four& squared) const {
-        const Four rest = 1 - squared * over_h_squared;
+    GAUSSMAP_LANES Four operator()(Four squared) const {
+        const Four rest = Four{one, one} - squared * over_h_squared;
         return rest * rest;
     }
 };
@@ -36,7 +38,7 @@ struct Smooth {
 /// Second moments of the point and its neighbours about their mean.
 template <class Weight>
 Symmetric3 moments(const Neighborhood& neighborhood, const Weight& weight) {
-    Four w = {}, x = {}, y = {}, z = {}, xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
+    Four w, x, y, z, xx, xy, xz, yy, yz, zz;
     for (std::size_t j = 0; j < neighborhood.count; j += lanes) {
         const Four dx = load_four(&neighborhood.x[j]), dy = load_four(&neighborhood.y[j]);
         const Four dz = load_four(&neighborhood.z[j]), s = weight(dx * dx + dy * dy + dz * dz);
@@ -56,7 +58,7 @@ Symmetric3 moments(const Neighborhood& neighborhood, const Weight& weight) {
 /// The same from differences to the mean, which cancel nothing, one after the other.
 template <class Weight>
 Symmetric3 careful_moments(const Neighborhood& neighborhood, const Weight& weight) {
-    const auto weight_of = [&](Vec3 d) { return weight(Four{} + squared(d))[0]; };
+    const auto weight_of = [&](Vec3 d) { return weight(Four{squared(d) * one, one}).low[0]; };
     Vec3 mean;
     double all = 1;
     for (std::size_t j = 0; j < neighborhood.count; ++j) {
@@ -95,6 +97,21 @@ constexpr int column_of(int i, int j) {
     return (i + j) * (i + j + 1) / 2 + j - 1;
 }
 
+/// Products of monomials are monomials of up to twice the degree, of which each sum is made once, of two columns.
+template <int Degree>
+struct Sums {
+    static constexpr int count = column_of(0, 2 * Degree) + 1;
+    static constexpr auto factors = [] {
+        std::array<std::array<int, 2>, count> result{};
+        for (int s = 2; s < count; ++s) {
+            const auto [i, j] = powers(s);
+            const int half = (i + j) / 2, first_i = std::min(i, half), first_j = half - first_i;
+            result[s] = {column_of(first_i, first_j), column_of(i - first_i, j - first_j)};
+        }
+        return result;
+    }();
+};
+
 }  // namespace
 
 Vec3 principal_normal(const Neighborhood& neighborhood, bool weighted) {
@@ -128,14 +145,9 @@ void Jet<Degree>::fill(const Neighborhood& neighborhood, const Frame& frame) {
 template <int Degree>
 bool Jet<Degree>::solve_normal_equations(std::size_t slots, double& cu, double& cv) const {
     const auto column = [&](int c) { return columns_.data() + static_cast<std::size_t>(c) * stride_; };
-    // Products of monomials are monomials of up to twice the degree: each sum is made once.
-    constexpr int sums = column_of(0, 2 * Degree) + 1;
-    std::array<double, sums> sum;
-    for (int s = 2; s < sums; ++s) {
-        const auto [i, j] = powers(s);
-        const int half = (i + j) / 2, ia = std::min(i, half), ja = half - ia;
-        sum[s] = product(column(column_of(ia, ja)), column(column_of(i - ia, j - ja)), slots);
-    }
+    std::array<double, Sums<Degree>::count> sum;
+    for (int s = 2; s < Sums<Degree>::count; ++s)
+        sum[s] = product(column(Sums<Degree>::factors[s][0]), column(Sums<Degree>::factors[s][1]), slots);
     double a[unknowns][unknowns], right[unknowns], largest = 0;
     for (int r = 0; r < unknowns; ++r) {
         const auto [ri, rj] = powers(unknowns - 1 - r);
