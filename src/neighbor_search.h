@@ -26,10 +26,11 @@ struct SearchRoom {
     std::int32_t* found;
     std::uint32_t* nodes[2];  ///< lists of nodes on the way down
     double* boxes;            ///< of the leaves collected: 6 arrays
+    double typical;           ///< squared distance of the k-th nearest, from group to group; infinite at first
 };
 
 /// Fill `found` and `found_distance` for the queries of a group: the k nearest, equal distances by smaller index.
-using NearestKernel = void (*)(const SearchRoom& room, const QueryGroup& group);
+using NearestKernel = void (*)(SearchRoom& room, const QueryGroup& group);
 extern const NearestKernel nearest_kernel_baseline;
 extern const NearestKernel nearest_kernel_avx2;
 

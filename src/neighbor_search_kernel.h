@@ -54,17 +54,6 @@ GAUSSMAP_INLINE Real maximum(Real a, Real b) {
 #endif
 }
 
-GAUSSMAP_INLINE Real square_root(Real a) {
-#if defined __AVX2__
-    return (Real)_mm256_sqrt_pd((__m256d)a);
-#elif defined __SSE2__
-    return (Real)_mm_sqrt_pd((__m128d)a);
-#else
-    for (int l = 0; l < lanes; ++l) a[l] = __builtin_sqrt(a[l]);
-    return a;
-#endif
-}
-
 /// A bit a lane.
 GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
 #if defined __AVX2__
@@ -139,15 +128,9 @@ GAUSSMAP_INLINE Real gap(const Box& box, const double* const (&low)[3], const do
     return sum;
 }
 
-/// A distance, rounded up a little, and so is its square: sums of them keep the triangle inequality true of squared
-/// distances as computed, where those underflow too.
-constexpr double tiny = 1e-300, slack = 1 + 1e-12;
-inline double reach(double squared) {
-    return __builtin_sqrt(squared + tiny);
-}
-inline double square(double length) {
-    return length * length * slack;
-}
+/// Squared radii in which a query expects its k nearest and in which it still looks for them among the leaves of its
+/// group, as multiples of the typical squared distance of the k-th nearest of queries before.
+constexpr double narrow = 1.3, wide = 2;
 
 struct Found {
     double distance = infinity;  ///< squared
@@ -166,11 +149,11 @@ class Search {
     void alone(int query) {
         begin(query, {});
         visit(room_.level_count - 1, 0);
-        finish();
+        order();
     }
 
-    /// With a bound, among the leaves collected.
-    void within(int query, double bound, std::size_t leaves);
+    /// Among the leaves collected, up to a bound; false where fewer than k are within it.
+    bool within(int query, double bound, std::size_t leaves);
 
     /// List the leaves that are within a bound of a box; 0 where they are too many.
     std::size_t collect(const Box& box, double bound);
@@ -188,7 +171,6 @@ class Search {
     void visit(int level, std::size_t node);
     void order();
     void shrink();
-    void finish() { order(); }
 
     const SearchRoom room_;
     const QueryGroup& group_;
@@ -273,7 +255,7 @@ std::size_t Search::collect(const Box& box, double bound) {
     return count;
 }
 
-void Search::within(int query, double bound, std::size_t leaves) {
+bool Search::within(int query, double bound, std::size_t leaves) {
     begin(query, {bound, nobody});
     const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
     const double *const box = room_.boxes, *low[3], *high[3];
@@ -288,7 +270,9 @@ void Search::within(int query, double bound, std::size_t leaves) {
             if (at < leaves) scan(room_.nodes[0][at]);
         }
     }
-    finish();
+    if (candidates_.count < room_.k) return false;
+    order();
+    return true;
 }
 
 /// The k nearest candidates, in order, as the results of the query. A key is a squared distance whose lowest bits make
@@ -331,14 +315,7 @@ void Search::shrink() {
     bound_ = {found_distance[room_.k - 1], found[room_.k - 1]};
 }
 
-double squared_distance(const QueryGroup& group, int a, int b) {
-    const double dx = group.p[0][a] - group.p[0][b], dy = group.p[1][a] - group.p[1][b],
-                 dz = group.p[2][a] - group.p[2][b];
-    return dx * dx + dy * dy + dz * dz;
-}
-
-void nearest(const SearchRoom& room, const QueryGroup& group) {
-    Search search(room, group);
+Box box_of(const QueryGroup& group) {
     Box box;
     for (int a = 0; a < 3; ++a) {
         box.low[a] = box.high[a] = group.p[a][0];
@@ -347,42 +324,22 @@ void nearest(const SearchRoom& room, const QueryGroup& group) {
             box.high[a] = std::max(box.high[a], group.p[a][q]);
         }
     }
-    int centre = 0;
-    double least = infinity;
+    return box;
+}
+
+void nearest(SearchRoom& room, const QueryGroup& group) {
+    Search search(room, group);
+    double typical = room.typical;
+    const double limit = wide * typical;
+    const std::size_t leaves = limit < infinity ? search.collect(box_of(group), limit) : 0;
     for (int q = 0; q < group.count; ++q) {
-        double off = 0;
-        for (int a = 0; a < 3; ++a) {
-            const double d = group.p[a][q] - (0.5 * box.low[a] + 0.5 * box.high[a]);
-            off += d * d;
-        }
-        if (off < least) least = off, centre = q;
-    }
-    search.alone(centre);
-    double spread = 0;
-    for (int q = 0; q < group.count; ++q) spread = std::max(spread, squared_distance(group, centre, q));
-    double reaches[leaf_points];
-    for (double& r : reaches) r = infinity;
-    reaches[centre] = reach(search.farthest(centre));
-    const double bound = square(reaches[centre] + reach(spread));
-    const std::size_t leaves = bound < infinity ? search.collect(box, bound) : 0;
-    for (int q = 0; q < group.count; ++q) {
-        if (q == centre) continue;
-        if (leaves == 0) {
+        const double bound = std::min(limit, narrow * typical);
+        if (leaves == 0 || !(search.within(q, bound, leaves) || (bound < limit && search.within(q, limit, leaves))))
             search.alone(q);
-            continue;
-        }
-        Real limit = all(infinity);
-        for (int i = 0; i < leaf_points; i += lanes) {
-            const Real dx = load(group.p[0] + i) - group.p[0][q], dy = load(group.p[1] + i) - group.p[1][q],
-                       dz = load(group.p[2] + i) - group.p[2][q];
-            const Real sum = load(reaches + i) + square_root(dx * dx + dy * dy + dz * dz + tiny);
-            limit = sum < limit ? sum : limit;
-        }
-        double length = limit[0];
-        for (int l = 1; l < lanes; ++l) length = std::min(length, limit[l]);
-        search.within(q, square(length), leaves);
-        reaches[q] = reach(search.farthest(q));
+        const double farthest = search.farthest(q);
+        typical = typical < infinity ? 0.75 * typical + 0.25 * farthest : farthest;
     }
+    room.typical = typical;
 }
 
 #undef GAUSSMAP_INLINE

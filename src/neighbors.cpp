@@ -49,7 +49,8 @@ class Room {
                 found_distance_.data(),
                 found_.data(),
                 {nodes_.data(), nodes_.data() + most_leaves_},
-                boxes_.data()};
+                boxes_.data(),
+                std::numeric_limits<double>::infinity()};
     }
     SearchRoom view;
 
@@ -75,7 +76,7 @@ Neighbors nearest_neighbors(Points points, int k, const Execution& run) {
     if (others == 0) return neighbors;
     const NearestKernel nearest = best_kernel();
     for_blocks(tree.leaves.size(), 256, part_of(run, 0.3, 1), [&](std::size_t, std::size_t l, std::size_t last) {
-        const Room room(tree, others + 1);
+        Room room(tree, others + 1);
         for (; l < last; ++l) {
             const Leaf& leaf = tree.leaves[l];
             QueryGroup group;
