@@ -1,9 +1,9 @@
-// Sorting doubles in vector registers: blocks of 32 by a network, then merging, eight at a time. Part of the kernels that
-// include it, one for each instruction set; without external linkage for their reason. Keys that differ come out in
-// the one order there is, whatever the instruction set.
+// Sorting doubles in vector registers: blocks of 32 by a network, then merging, eight at a time. Part of the kernels
+// that include it, one for each instruction set; without external linkage for their reason. Keys that differ come out
+// in the one order there is, whatever the instruction set.
 //
-// The 8-input network has 19 comparisons (Knuth, The Art of Computer Programming 3, 5.3.4); merging is bitonic (Batcher,
-// "Sorting Networks and Their Applications", 1968).
+// The 8-input network has 19 comparisons (Knuth, The Art of Computer Programming 3, 5.3.4); merging is bitonic
+// (Batcher, "Sorting Networks and Their Applications", 1968).
 #pragma once
 
 #include <algorithm>

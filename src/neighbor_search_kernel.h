@@ -1,11 +1,12 @@
 // The search of neighbor_search.h for one instruction set. Included by neighbor_search_<set>.cpp alone, each compiled
 // for its set; nothing here may have external linkage but the entry that each defines, or the linker could pick a copy
-// that the machine cannot run. Every set rounds every operation alike, and results are the exact ones: equal everywhere.
+// that the machine cannot run. Every set rounds every operation alike, and results are the exact ones: equal
+// everywhere.
 //
-// Candidates within a bound are collected without order; sorting comes once, at the end. The bound of a query comes from
-// queries near it that are done (triangle inequality), and the leaves that it has to look at from a list that its whole
-// group shares. A box whose lower bound of distances ties with the bound is weighed by its lowest index, so that equal
-// points and grids neither change the answer nor slow it down.
+// Candidates within a bound are collected without order; sorting comes once, at the end. The bound of a query comes
+// from queries near it that are done (triangle inequality), and the leaves that it has to look at from a list that its
+// whole group shares. A box whose lower bound of distances ties with the bound is weighed by its lowest index, so that
+// equal points and grids neither change the answer nor slow it down.
 #pragma once
 
 #ifdef __SSE2__
@@ -130,7 +131,10 @@ GAUSSMAP_INLINE Real gap(const Box& box, const double* const (&low)[3], const do
 
 /// Squared radii in which a query expects its k nearest and in which it still looks for them among the leaves of its
 /// group, as multiples of the typical squared distance of the k-th nearest of queries before.
-constexpr double narrow = 1.3, wide = 2;
+constexpr double wide = 2;
+inline double narrow(std::size_t k) {
+    return 1 + 1.4 / __builtin_sqrt(static_cast<double>(k));
+}
 
 struct Found {
     double distance = infinity;  ///< squared
@@ -331,9 +335,10 @@ void nearest(SearchRoom& room, const QueryGroup& group) {
     Search search(room, group);
     double typical = room.typical;
     const double limit = wide * typical;
+    const double expected = narrow(room.k);
     const std::size_t leaves = limit < infinity ? search.collect(box_of(group), limit) : 0;
     for (int q = 0; q < group.count; ++q) {
-        const double bound = std::min(limit, narrow * typical);
+        const double bound = std::min(limit, expected * typical);
         if (leaves == 0 || !(search.within(q, bound, leaves) || (bound < limit && search.within(q, limit, leaves))))
             search.alone(q);
         const double farthest = search.farthest(q);

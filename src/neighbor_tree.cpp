@@ -1,5 +1,5 @@
-// The tree of neighbor_tree.h: 128 points in a row of the spatial order make the leaves of one node, parted at medians as
-// in a kd-tree (Friedman, Bentley, Finkel 1977), which makes their boxes tight; nodes above join eight in a row.
+// The tree of neighbor_tree.h: 128 points in a row of the spatial order make the leaves of one node, parted at medians
+// as in a kd-tree (Friedman, Bentley, Finkel 1977), which makes their boxes tight; nodes above join eight in a row.
 #include "neighbor_tree.h"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ constexpr Boxes no_boxes() {
 void part(Entry* first, Entry* last) {
     const auto leaves = (last - first + leaf_points - 1) / leaf_points;
     if (leaves < 2) return;
-    Entry *const middle = first + (leaves + 1) / 2 * leaf_points;
+    Entry* const middle = first + (leaves + 1) / 2 * leaf_points;
     double extent[3];
     for (int a = 0; a < 3; ++a) {
         double low = first->p[a], high = low;

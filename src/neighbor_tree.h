@@ -25,8 +25,8 @@ struct alignas(32) Boxes {
     std::int32_t first[children];
 };
 
-/// levels[0][i] holds the boxes of the leaves 8i … 8i + 7, levels[l][i] those of the nodes 8i … 8i + 7 of levels[l − 1];
-/// the last level has one node. The shape depends on the number of points alone, so no input makes the tree deep.
+/// levels[0][i] holds the boxes of the leaves 8i … 8i + 7, levels[l][i] those of the nodes 8i … 8i + 7 of levels[l −
+/// 1]; the last level has one node. The shape depends on the number of points alone, so no input makes the tree deep.
 struct NeighborTree {
     std::size_t count = 0;  ///< points
     std::vector<Leaf> leaves;
