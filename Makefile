@@ -71,6 +71,7 @@ bench: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench
 	build/bench/bench/mesh_curvature
+	build/bench/bench/knn
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null

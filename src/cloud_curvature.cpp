@@ -1,5 +1,11 @@
 // Total curvature of point clouds: the Dirichlet energy of the normals over each point's Delaunay fan.
+//
+// The stages: finite points without copies along a space-filling curve (ordered_cloud.h); then, block by block along
+// the curve, neighbours, normals (normal_fit.h), fans (fan.h), and densities, written to the points' places in the
+// input. A fan whose corners lie in other blocks waits until all normals are there; the rest of what a block works
+// with is forgotten with it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -14,13 +20,16 @@
 #include "fan.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
+#include "normal_fit.h"
+#include "ordered_cloud.h"
 #include "parallel.h"
 #include "shape_operator.h"
 
 namespace gaussmap {
 namespace {
 
-constexpr std::size_t grain = 1024;
+constexpr std::size_t grain = 4096;  ///< points a block
+constexpr std::size_t batch = 16;    ///< points that go through the stages of a block together
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Energy {
@@ -40,126 +49,230 @@ Energy triangle_energy(Vec3 a, Vec3 b, Vec3 normal, Vec3 normal_a, Vec3 normal_b
     return {std::max(sum, 0.0) / (2 * twice_area), twice_area / 2};
 }
 
-/// Over the fan of a point, in units of the scaled neighbourhood. With `align`, normals that look away from the
-/// centre's are turned round.
-Energy fan_energy(const Neighborhood& neighborhood, const Fan& fan, const double* normals, Vec3 normal, bool align) {
-    const auto normal_of = [&](const Ray& ray) {
-        const Vec3 other = load(normals + 3 * static_cast<std::size_t>(ray.index));
+/// Over the fan of a point, its corners being the neighbours in turn, in units of the scaled neighbourhood. With
+/// `align`, normals that look away from the centre's are turned round.
+Energy fan_energy(const Neighborhood& corners, bool closed, const double* normals, Vec3 normal, bool align) {
+    const auto normal_of = [&](std::size_t c) {
+        const Vec3 other = load(normals + 3 * static_cast<std::size_t>(corners.index[c]));
         return align && dot(other, normal) < 0 ? -other : other;
     };
     Energy sum;
-    if (fan.chain.empty()) return sum;
-    const std::size_t corners = fan.chain.size();
-    const Ray* before = &fan.chain[fan.closed ? corners - 1 : 0];
-    Vec3 normal_before = normal_of(*before);
-    for (std::size_t c = fan.closed ? 0 : 1; c < corners; ++c) {
-        const Ray* ray = &fan.chain[c];
-        const Vec3 normal_here = normal_of(*ray);
-        const Energy energy = triangle_energy(neighborhood.offset[before->slot], neighborhood.offset[ray->slot], normal,
-                                              normal_before, normal_here);
+    if (corners.count == 0) return sum;
+    std::size_t before = closed ? corners.count - 1 : 0;
+    Vec3 normal_before = normal_of(before);
+    for (std::size_t c = closed ? 0 : 1; c < corners.count; ++c) {
+        const Vec3 normal_here = normal_of(c);
+        const Energy energy =
+            triangle_energy(corners.offset(before), corners.offset(c), normal, normal_before, normal_here);
         sum.kappa += energy.kappa;
         sum.area += energy.area;
-        before = ray;
+        before = c;
         normal_before = normal_here;
     }
     return sum;
 }
 
-/// Unit normals of the distinct points: the given ones of their first holders.
-std::vector<double> given_normals(Points normals, const DistinctPoints& cloud, const Execution& run) {
-    std::vector<double> result(3 * cloud.source.size());
-    for_blocks(cloud.source.size(), grain, run, [&](std::size_t, std::size_t i, std::size_t last) {
+/// The fans of some points.
+struct Chains {
+    struct One {
+        std::int32_t point;
+        std::uint32_t begin, size;
+        bool closed;
+    };
+    std::vector<One> fans;
+    std::vector<std::int32_t> corners;
+
+    void add(std::size_t point, bool closed, const std::int32_t* chain, std::size_t size) {
+        fans.push_back({static_cast<std::int32_t>(point), static_cast<std::uint32_t>(corners.size()),
+                        static_cast<std::uint32_t>(size), closed});
+        corners.insert(corners.end(), chain, chain + size);
+    }
+};
+
+/// What a block counts, and what it leaves.
+struct Block {
+    std::size_t lowered = 0, boundary = 0;
+    double seconds_normals = 0, seconds_curvature = 0;
+    Chains waiting;
+};
+
+/// A cloud on its way to the result.
+struct Work {
+    const OrderedCloud& cloud;
+    const Neighbors& neighbors;
+    const CloudCurvatureOptions& options;
+    bool given;                   ///< normals, which are then there already
+    std::vector<double> normals;  ///< of the points of `cloud`
+    std::vector<Block> blocks;
+
+    Vec3 normal(std::size_t i) const { return load(normals.data() + 3 * i); }
+};
+
+/// Unit normals of the points: the given ones of their first holders.
+std::vector<double> given_normals(Points normals, const OrderedCloud& cloud, const Execution& run) {
+    std::vector<double> result(3 * cloud.count());
+    for_blocks(cloud.count(), grain, run, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i)
             store(result.data() + 3 * i, unit(load(normals[static_cast<std::size_t>(cloud.source[i])])));
     });
     return result;
 }
 
-/// Fans and densities of the distinct points, written to the places of their first holders.
-void measure(const DistinctPoints& cloud, const Neighbors& neighbors, const std::vector<double>& normals, bool align,
-             const Execution& run, CloudCurvature& result) {
-    const std::size_t count = cloud.source.size();
-    std::vector<std::size_t> boundary_in(block_count(count, grain));
-    for_blocks(count, grain, run, [&](std::size_t block, std::size_t i, std::size_t last) {
-        Neighborhood neighborhood(neighbors.k);
-        Fan fan;
-        for (; i < last; ++i) {
-            const Vec3 normal = load(normals.data() + 3 * i);
-            const auto place = static_cast<std::size_t>(cloud.source[i]);
-            store(result.normals.data() + 3 * place, normal);
-            neighborhood.gather(cloud.points, i, neighbors[i]);
-            // Looking up, whichever way the normal looks: a flip of all normals changes no bit of the sums.
-            build_fan(neighborhood, upward(normal), fan);
-            if (fan.triangles() > 0 && !fan.closed) ++boundary_in[block];
-            const Energy energy = fan_energy(neighborhood, fan, normals.data(), normal, align);
-            if (!(energy.area > 0)) continue;
-            if (!result.tensor.k1.empty())
-                store(result.tensor, place, fan_tensor(neighborhood, fan, normals.data(), normal, align));
-            result.kappa[place] = energy.kappa;
-            result.density[place] = energy.kappa / energy.area * neighborhood.scale * neighborhood.scale;
-        }
-    });
-    for (const std::size_t open : boundary_in) result.boundary += open;
-}
-
-/// Copies of a point get what its first holder got.
-void share_with_copies(const DistinctPoints& cloud, CloudCurvature& result) {
-    for (std::size_t i = 0; i < cloud.target.size(); ++i) {
-        if (cloud.target[i] < 0) continue;
-        const auto first = static_cast<std::size_t>(cloud.source[static_cast<std::size_t>(cloud.target[i])]);
-        if (first == i) continue;
-        result.density[i] = result.density[first];
-        result.kappa[i] = result.kappa[first];
-        if (!result.tensor.k1.empty()) copy(result.tensor, first, i);
-        store(result.normals.data() + 3 * i, load(result.normals.data() + 3 * first));
+/// The last stage: densities of fans whose normals are all there.
+void measure(const Work& work, const Chains& chains, CloudCurvature& result) {
+    const bool align = !work.given && work.options.orientation == Orientation::local;
+    Neighborhood corners(work.neighbors.k);
+    for (const Chains::One& fan : chains.fans) {
+        const auto i = static_cast<std::size_t>(fan.point), place = static_cast<std::size_t>(work.cloud.source[i]);
+        corners.gather(work.cloud.points, i, chains.corners.data() + fan.begin, fan.size);
+        const Energy energy = fan_energy(corners, fan.closed, work.normals.data(), work.normal(i), align);
+        if (!(energy.area > 0)) continue;
+        result.kappa[place] = energy.kappa;
+        result.density[place] = energy.kappa / energy.area * corners.scale * corners.scale;
+        if (work.options.tensor)
+            store(result.tensor, place, fan_tensor(corners, fan.closed, work.normals.data(), work.normal(i), align));
     }
 }
 
-}  // namespace
+/// The stages of points [first, last), and the room for them.
+class BlockWork {
+  public:
+    BlockWork(Work& work, std::size_t b, std::size_t first, std::size_t last)
+        : work_(work),
+          block_(work.blocks[b]),
+          first_(first),
+          last_(last),
+          around_(batch, Neighborhood(work.neighbors.k)),
+          normal_of_(work.options.method, work.options.degree, work.neighbors.k),
+          fan_(work.neighbors.k),
+          chain_(work.neighbors.k) {}
 
-CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
+    void run(CloudCurvature& result) {
+        for (std::size_t i = first_; i < last_; i += batch) {
+            const std::size_t end = std::min(i + batch, last_);
+            auto start = Clock::now();
+            for (std::size_t j = i; j < end; ++j)
+                around_[j - i].gather(work_.cloud.points, j, work_.neighbors[j], work_.neighbors.k);
+            if (!work_.given)
+                for (std::size_t j = i; j < end; ++j) fit(around_[j - i], j);
+            block_.seconds_normals += seconds_since(start);
+            start = Clock::now();
+            for (std::size_t j = i; j < end; ++j) build(around_[j - i], j);
+            block_.seconds_curvature += seconds_since(start);
+        }
+        const auto start = Clock::now();
+        measure(work_, ready_, result);
+        block_.seconds_curvature += seconds_since(start);
+    }
+
+  private:
+    void fit(const Neighborhood& around, std::size_t i) {
+        const NormalFit::Result fitted = normal_of_(around);
+        store(work_.normals.data() + 3 * i, fitted.normal);
+        if (fitted.lowered) ++block_.lowered;
+    }
+
+    void build(const Neighborhood& around, std::size_t i) {
+        // Looking up, whichever way the normal looks: a flip of all normals changes no bit of the sums.
+        build_fan(around, upward(work_.normal(i)), fan_);
+        if (fan_.triangles() == 0) return;
+        if (!fan_.closed) ++block_.boundary;
+        bool inside = true;
+        for (std::size_t c = 0; c < fan_.corners; ++c) {
+            chain_[c] = around.index[static_cast<std::size_t>(fan_.chain[c])];
+            const auto corner = static_cast<std::size_t>(chain_[c]);
+            inside = inside && corner >= first_ && corner < last_;
+        }
+        const bool ready = work_.given || (inside && work_.options.orientation != Orientation::mst);
+        (ready ? ready_ : block_.waiting).add(i, fan_.closed, chain_.data(), fan_.corners);
+    }
+
+    Work& work_;
+    Block& block_;
+    std::size_t first_, last_;
+    std::vector<Neighborhood> around_;
+    NormalFit normal_of_;
+    Fan fan_;
+    std::vector<std::int32_t> chain_;
+    Chains ready_;
+};
+
+/// Copies of a point get what its first holder got.
+void share_with_copies(const OrderedCloud& cloud, CloudCurvature& result) {
+    for (const auto& [index, first] : cloud.copies) {
+        const auto to = static_cast<std::size_t>(index), from = static_cast<std::size_t>(first);
+        result.density[to] = result.density[from];
+        result.kappa[to] = result.kappa[from];
+        if (!result.tensor.k1.empty()) copy(result.tensor, from, to);
+        store(result.normals.data() + 3 * to, load(result.normals.data() + 3 * from));
+    }
+}
+
+/// Back to the order of the input.
+void place_normals(const Work& work, CloudCurvature& result) {
+    for (std::size_t i = 0; i < work.cloud.count(); ++i)
+        store(result.normals.data() + 3 * static_cast<std::size_t>(work.cloud.source[i]), work.normal(i));
+}
+
+void check(Points points, Points normals, const CloudCurvatureOptions& options) {
     check_estimator(options.estimator, Input::cloud, options.confidence);
     if (options.k < 3)
         throw std::invalid_argument("k = " + std::to_string(options.k) +
                                     " is too small; a fan takes at least 3 neighbours");
     check_degree(options.degree);
     if (!normals.empty()) check_count("normals", normals.count, points.count, "points");
+}
 
+}  // namespace
+
+CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
+    check(points, normals, options);
     CloudCurvature result;
+    const bool given = !normals.empty(), tree = !given && options.orientation == Orientation::mst;
     auto start = Clock::now();
-    const DistinctPoints cloud = distinct_points(points);
-    result.duplicates = cloud.duplicates;
+    const OrderedCloud cloud = ordered_cloud(points, part_of(options.run, 0, 0.1));
+    result.duplicates = cloud.copies.size();
     result.non_finite = cloud.non_finite;
-    const auto others = static_cast<int>(std::max<std::size_t>(cloud.source.size(), 2) - 1);
+    const auto others = static_cast<int>(std::max<std::size_t>(cloud.count(), 2) - 1);
     const Neighbors neighbors =
-        nearest_neighbors(cloud.points, std::min(options.k, others), part_of(options.run, 0, 0.4));
+        nearest_neighbors(cloud.points, std::min(options.k, others), part_of(options.run, 0.1, 0.4));
     result.seconds_neighbors = seconds_since(start);
-
-    start = Clock::now();
-    const bool estimate = normals.empty();
-    std::vector<double> unit_normals;
-    if (estimate) {
-        CloudNormalsResult fitted =
-            cloud_normals(cloud.points, neighbors, {options.method, options.degree, part_of(options.run, 0.4, 0.7)});
-        result.lowered = fitted.lowered;
-        unit_normals = std::move(fitted.normals);
-        if (options.orientation == Orientation::mst)
-            orient_normals(cloud.points, neighbors, unit_normals, part_of(options.run, 0.7, 0.8));
-    } else {
-        unit_normals = given_normals(normals, cloud, part_of(options.run, 0.4, 0.5));
-    }
-    result.seconds_normals = seconds_since(start);
 
     start = Clock::now();
     result.density.assign(points.count, nan);
     result.kappa.assign(points.count, nan);
-    result.normals.assign(3 * points.count, nan);
     if (options.tensor) result.tensor = undefined_tensor(points.count);
-    const bool align = estimate && options.orientation == Orientation::local;
-    measure(cloud, neighbors, unit_normals, align, part_of(options.run, 0.8, 1), result);
+    Work work = {cloud, neighbors, options, given, {}, std::vector<Block>(block_count(cloud.count(), grain))};
+    if (given)
+        work.normals = given_normals(normals, cloud, part_of(options.run, 0.4, 0.5));
+    else
+        work.normals.resize(3 * cloud.count());
+    for_blocks(
+        cloud.count(), grain, part_of(options.run, 0.5, tree ? 0.7 : 0.9),
+        [&](std::size_t b, std::size_t first, std::size_t last) { BlockWork(work, b, first, last).run(result); });
+    double seconds_normals = 0, seconds_curvature = 0;
+    for (const Block& block : work.blocks) {
+        result.lowered += block.lowered;
+        result.boundary += block.boundary;
+        seconds_normals += block.seconds_normals;
+        seconds_curvature += block.seconds_curvature;
+    }
+    // The stages took turns: each gets its part of the time.
+    const double both = seconds_since(start), all = seconds_normals + seconds_curvature;
+    result.seconds_normals = all > 0 ? both * seconds_normals / all : 0;
+    result.seconds_curvature = both - result.seconds_normals;
+
+    start = Clock::now();
+    if (tree) orient_normals(cloud.points, neighbors, work.normals, part_of(options.run, 0.7, 0.9));
+    result.seconds_normals += seconds_since(start);
+    start = Clock::now();
+    for_blocks(work.blocks.size(), 1, part_of(options.run, 0.9, 1),
+               [&](std::size_t b, std::size_t, std::size_t) { measure(work, work.blocks[b].waiting, result); });
+    result.normals.assign(3 * points.count, nan);
+    place_normals(work, result);
     share_with_copies(cloud, result);
     for (const double density : result.density) result.undefined += std::isnan(density) ? 1 : 0;
-    result.seconds_curvature = seconds_since(start);
+    result.seconds_curvature += seconds_since(start);
     return result;
 }
 

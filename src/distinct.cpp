@@ -1,55 +1,34 @@
-// A cloud without repetitions, by one pass over a hash table of positions (open addressing, linear probing).
-#include <bit>
-
-#include "check_cloud.h"
+// A cloud without repetitions, in input order.
 #include "gaussmap/neighbors.h"
+#include "ordered_cloud.h"
 #include "vec.h"
 
 namespace gaussmap {
-namespace {
-
-/// Mixes the bits of the three coordinates, −0 read as +0. The finaliser is that of MurmurHash3 (Appleby).
-std::uint64_t hash(Vec3 p) {
-    std::uint64_t h = 0;
-    for (const double value : {p.x, p.y, p.z}) {
-        h ^= std::bit_cast<std::uint64_t>(value + 0.0);
-        h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdu;
-        h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53u;
-        h ^= h >> 33;
-    }
-    return h;
-}
-
-}  // namespace
 
 DistinctPoints distinct_points(Points points) {
-    check_countable(points);
     DistinctPoints distinct;
-    distinct.target.resize(points.count);
-    distinct.points.reserve(3 * points.count);
-    distinct.source.reserve(points.count);
-    std::vector<std::int32_t> table(std::bit_ceil(2 * points.count + 1), -1);  // positions of distinct.source
-    const std::size_t mask = table.size() - 1;
+    {
+        OrderedCloud cloud = ordered_cloud(points, {1, {}});
+        distinct.duplicates = cloud.copies.size();
+        distinct.non_finite = cloud.non_finite;
+        // A point's first holder, for now; itself where it is one.
+        distinct.target.assign(points.count, -1);
+        for (const std::int32_t i : cloud.source) distinct.target[static_cast<std::size_t>(i)] = i;
+        for (const Copy& copy : cloud.copies) distinct.target[static_cast<std::size_t>(copy.index)] = copy.first;
+        distinct.source = std::move(cloud.source);
+    }
+    distinct.points.reserve(3 * distinct.source.size());
+    distinct.source.clear();
     for (std::size_t i = 0; i < points.count; ++i) {
-        const Vec3 p = load(points[i]);
-        if (!finite(p)) {
-            distinct.target[i] = -1;
-            ++distinct.non_finite;
+        const std::int32_t first = distinct.target[i];
+        if (first < 0) continue;
+        if (static_cast<std::size_t>(first) < i) {
+            distinct.target[i] = distinct.target[static_cast<std::size_t>(first)];
             continue;
         }
-        std::size_t slot = hash(p) & mask;
-        for (; table[slot] >= 0; slot = (slot + 1) & mask) {
-            const Vec3 q = load(distinct.points.data() + 3 * static_cast<std::size_t>(table[slot]));
-            if (p.x == q.x && p.y == q.y && p.z == q.z) break;
-        }
-        if (table[slot] >= 0) {
-            ++distinct.duplicates;
-        } else {
-            table[slot] = static_cast<std::int32_t>(distinct.source.size());
-            distinct.source.push_back(static_cast<std::int32_t>(i));
-            distinct.points.insert(distinct.points.end(), {p.x, p.y, p.z});
-        }
-        distinct.target[i] = table[slot];
+        distinct.target[i] = static_cast<std::int32_t>(distinct.source.size());
+        distinct.source.push_back(first);
+        distinct.points.insert(distinct.points.end(), points[i], points[i] + 3);
     }
     return distinct;
 }

@@ -11,24 +11,24 @@ namespace gaussmap {
 
 /// A neighbour seen in the tangent plane.
 struct Ray {
-    double u, v, squared;  ///< the projection and its squared length
-    std::int32_t slot;     ///< of the neighbourhood
-    std::int32_t index;    ///< of the point
+    double u, v;        ///< the inverted projection, q/|q|²
+    double size;        ///< |u| + |v|
+    double squared;     ///< |q|² of the projection itself
+    double angle;       ///< grows with the polar angle, from 0 to 4
+    std::int32_t slot;  ///< of the neighbourhood
 };
 
 /// A fan and the room to build it in; reused from point to point.
 struct Fan {
-    std::vector<Ray> chain;  ///< counterclockwise about the normal; triangles between consecutive ones
-    bool closed = false;     ///< and one between the last and the first
+    std::vector<std::int32_t> chain;  ///< its first `corners` entries: slots of the neighbourhood, counterclockwise
+                                      ///< about the normal; triangles between consecutive ones
+    std::size_t corners = 0;
+    bool closed = false;             ///< and a triangle between the last and the first
+    std::vector<Ray> rays, turns;    ///< scratch: by slot and by angle
+    std::vector<std::int32_t> keys;  ///< scratch: what they are sorted by
 
-    struct Turn {
-        double angle;
-        std::int32_t ray;
-    };
-    std::vector<Ray> rays;    ///< scratch: all neighbours
-    std::vector<Turn> turns;  ///< scratch: rays by angle
-
-    std::size_t triangles() const { return chain.empty() ? 0 : chain.size() - (closed ? 0 : 1); }
+    explicit Fan(std::size_t k) : chain(k), rays(padded(k)), turns(rays.size()), keys(rays.size()) {}
+    std::size_t triangles() const { return corners == 0 ? 0 : corners - (closed ? 0 : 1); }
 };
 
 /// The triangles incident on the centre in the Delaunay triangulation of the centre and its projected neighbours: the
@@ -41,6 +41,7 @@ struct Fan {
 /// - neighbours that project onto the centre (to 1e-12 of the neighbourhood's size) are passed over;
 /// - neighbours all on one line through the centre make no fan; a gap of half a turn or more opens it.
 /// \param normal  unit, or NaN for no fan.
+/// Nothing is allocated. Time O(k²) for up to 64 neighbours, in vectors; O(k log k) beyond.
 void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan);
 
 }  // namespace gaussmap

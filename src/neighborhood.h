@@ -2,42 +2,56 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "gaussmap/types.h"
+#include "lanes.h"
 #include "vec.h"
 
 namespace gaussmap {
 
 /// Differences from a point, scaled by a power of two (so exactly) to a size near 1: squares and fourth powers of them
 /// neither overflow nor underflow whatever the unit of length, and a large common offset costs nothing.
+/// A coordinate an array, filled up with zeros to whole groups of lanes.
 struct Neighborhood {
-    std::vector<Vec3> offset;         ///< scale · (neighbour − point)
+    std::vector<double> x, y, z;      ///< scale · (neighbour − point); the largest coordinate is in [1, 2)
     std::vector<std::int32_t> index;  ///< of the neighbour
     std::size_t count = 0;
     double scale = 1;
 
-    explicit Neighborhood(std::size_t k) : offset(k), index(k) {}
+    explicit Neighborhood(std::size_t k) : x(padded(k)), y(x.size()), z(x.size()), index(k) {}
 
-    /// Neighbours are taken from a row of `Neighbors`, up to its first −1; none where the differences overflow.
-    void gather(Points points, std::size_t centre, const std::int32_t* row) {
+    Vec3 offset(std::size_t j) const { return {x[j], y[j], z[j]}; }
+
+    /// Neighbours are taken from a row of `most` (up to k) indices, up to its first −1; none where the differences
+    /// overflow.
+    void gather(Points points, std::size_t centre, const std::int32_t* row, std::size_t most) {
         const Vec3 origin = load(points[centre]);
-        double largest = 0;
-        for (count = 0; count < offset.size() && row[count] >= 0; ++count) {
+        Vec3 largest;
+        for (count = 0; count < most && row[count] >= 0; ++count) {
             const Vec3 d = load(points[static_cast<std::size_t>(row[count])]) - origin;
-            largest = std::max({largest, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-            offset[count] = d;
+            largest.x = std::max(largest.x, std::abs(d.x));
+            largest.y = std::max(largest.y, std::abs(d.y));
+            largest.z = std::max(largest.z, std::abs(d.z));
+            x[count] = d.x, y[count] = d.y, z[count] = d.z;
             index[count] = row[count];
         }
-        if (largest == 0 || !std::isfinite(largest)) {
-            count = largest == 0 ? count : 0;
-            scale = 1;
-            return;
-        }
-        scale = std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
-        for (std::size_t j = 0; j < count; ++j) offset[j] = scale * offset[j];
+        rescale(std::max({largest.x, largest.y, largest.z}));
+        for (std::size_t j = count; j < padded(count); ++j) x[j] = y[j] = z[j] = 0;
+    }
+
+  private:
+    void rescale(double largest) {
+        scale = 1;
+        if (!std::isfinite(largest)) count = 0;
+        if (largest == 0 || count == 0) return;
+        // Powers of two by their exponents: 1023 stands for 2⁰.
+        const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52);
+        scale = std::bit_cast<double>(static_cast<std::uint64_t>(2046 - std::clamp(exponent, 23, 2023)) << 52);
+        for (std::size_t j = 0; j < count; ++j) x[j] *= scale, y[j] *= scale, z[j] *= scale;
     }
 };
 

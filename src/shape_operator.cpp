@@ -109,24 +109,24 @@ PrincipalCurvatures vertex_tensor(Points vertices, Triangles faces, Points unit_
     return tensor;
 }
 
-Principal fan_tensor(const Neighborhood& neighborhood, const Fan& fan, const double* normals, Vec3 normal, bool align) {
+Principal fan_tensor(const Neighborhood& corners, bool closed, const double* normals, Vec3 normal, bool align) {
     const Frame frame = tangent_frame(normal);
-    const auto change = [&](const Ray& ray) {
-        const Vec3 other = load(normals + 3 * static_cast<std::size_t>(ray.index));
+    const auto change = [&](std::size_t c) {
+        const Vec3 other = load(normals + 3 * static_cast<std::size_t>(corners.index[c]));
         return (align && dot(other, normal) < 0 ? -other : other) - normal;
     };
     Symmetric2 sum;
     double area = 0;
     Derivative d;
-    for (std::size_t t = 0; t < fan.triangles(); ++t) {
-        const Ray &a = fan.chain[t], &b = fan.chain[(t + 1) % fan.chain.size()];
-        if (!derivative(neighborhood.offset[a.slot], neighborhood.offset[b.slot], change(a), change(b), d)) continue;
+    for (std::size_t a = 0; a + (closed ? 0 : 1) < corners.count; ++a) {
+        const std::size_t b = a + 1 < corners.count ? a + 1 : 0;
+        if (!derivative(corners.offset(a), corners.offset(b), change(a), change(b), d)) continue;
         const Symmetric2 s = d.turned(frame);
         sum = {sum.uu + d.area * s.uu, sum.uv + d.area * s.uv, sum.vv + d.area * s.vv};
         area += d.area;
     }
     if (!(area > 0)) return {};
-    const double scale = neighborhood.scale / area;
+    const double scale = corners.scale / area;
     return principal({scale * sum.uu, scale * sum.uv, scale * sum.vv}, frame);
 }
 

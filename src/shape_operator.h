@@ -2,8 +2,8 @@
 #pragma once
 
 #include "eigen2.h"
-#include "fan.h"
 #include "gaussmap/curvature.h"
+#include "neighborhood.h"
 
 namespace gaussmap {
 
@@ -23,7 +23,8 @@ PrincipalCurvatures vertex_tensor(Points vertices, Triangles faces, Points unit_
 
 /// Of a point of a cloud: the mean of the triangles of its fan by area, in 1/length of the cloud. With `align`, normals
 /// that look away from the centre's are turned round.
+/// \param corners  of the fan, in turn; `closed`: the last and the first make a triangle too.
 /// \param normals  unit, one a point, NaN where undefined; `normal` that of the centre.
-Principal fan_tensor(const Neighborhood& neighborhood, const Fan& fan, const double* normals, Vec3 normal, bool align);
+Principal fan_tensor(const Neighborhood& corners, bool closed, const double* normals, Vec3 normal, bool align);
 
 }  // namespace gaussmap

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "gaussmap/types.h"
@@ -23,9 +24,45 @@ struct Neighbors {
 /// at distance 0). Exact, and the same bits for any number of threads.
 /// \param points  n finite points, at most 2³¹ − 1.
 /// \throw std::invalid_argument on k < 1, a non-finite point (its index is named) or too many points.
-/// Time O(n log n + n k) for points on surfaces; memory 4k + 46 bytes a point.
+/// Time O(n k log k) for points on surfaces; memory 4k + 36 bytes a point.
 /// However many points are equal, it is never quadratic.
 Neighbors nearest_neighbors(Points points, int k, const Execution& run = {});
+
+/// For each of some queries, up to k points, nearest first, equal distances by smaller index.
+/// Rows of k entries; where there are fewer than k points, `index` is filled with −1.
+struct NearestPoints {
+    std::size_t k = 0;
+    std::vector<std::int32_t> index;
+    std::vector<double> squared_distance;  ///< infinite where the index is −1; empty unless asked for
+};
+
+struct NeighborTree;
+
+/// Points made ready for queries at any place. Copies the points (36 bytes each); copies of the index share them.
+class NeighborIndex {
+  public:
+    /// \param points  n finite points, at most 2³¹ − 1. Time O(n) for points on surfaces.
+    /// \throw std::invalid_argument on a non-finite point (its index is named) or too many points.
+    explicit NeighborIndex(Points points, const Execution& run = {});
+
+    std::size_t count() const;
+
+    /// The k points nearest to each query. A query that is itself a point finds that point, or a copy of it.
+    /// Exact, and the same bits for any number of threads; fastest for many queries in one call, in any order.
+    /// \throw std::invalid_argument on k < 1, a non-finite query (its index is named) or more than 2³¹ − 1 queries.
+    /// Time O(k log k) a query for points on surfaces.
+    NearestPoints nearest(Points queries, int k, bool distances = false, const Execution& run = {}) const;
+
+  private:
+    std::shared_ptr<const NeighborTree> tree_;
+};
+
+/// An order of the points in which near points are near each other: order[j] is the index of the j-th point along a
+/// space-filling curve. Work on clouds runs faster in this order. It depends on the set of positions alone; equal
+/// positions follow each other by index.
+/// \throw std::invalid_argument on a non-finite point (its index is named) or more than 2³¹ − 1 points.
+/// Time O(n) for points on surfaces; memory 20 bytes a point.
+std::vector<std::int32_t> spatial_order(Points points, const Execution& run = {});
 
 /// The cloud without repetitions: finite points, each position once (its first holder), in input order.
 struct DistinctPoints {

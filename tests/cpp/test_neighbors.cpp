@@ -6,45 +6,21 @@
 #include <numeric>
 
 #include "clouds.h"
+#include "nearest_reference.h"
 
 using namespace gaussmap;
+using support::brute_force;
 using support::Random;
+using support::random_points;
 using support::refusal;
 
 namespace {
-
-/// The definition: all others sorted by (squared distance, index).
-std::vector<std::int32_t> brute_force(const std::vector<double>& points, int k) {
-    const std::size_t n = points.size() / 3;
-    std::vector<std::int32_t> index(n * static_cast<std::size_t>(k), -1);
-    std::vector<std::pair<double, std::int32_t>> others;
-    for (std::size_t i = 0; i < n; ++i) {
-        others.clear();
-        for (std::size_t j = 0; j < n; ++j) {
-            if (i == j) continue;
-            const double dx = points[3 * j] - points[3 * i], dy = points[3 * j + 1] - points[3 * i + 1],
-                         dz = points[3 * j + 2] - points[3 * i + 2];
-            others.emplace_back(dx * dx + dy * dy + dz * dz, static_cast<std::int32_t>(j));
-        }
-        const std::size_t wanted = std::min(others.size(), static_cast<std::size_t>(k));
-        std::partial_sort(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(wanted), others.end());
-        for (std::size_t j = 0; j < wanted; ++j) index[i * static_cast<std::size_t>(k) + j] = others[j].second;
-    }
-    return index;
-}
-
-std::vector<double> random_points(std::size_t n, std::uint64_t seed, double size = 1) {
-    Random random(seed);
-    std::vector<double> points(3 * n);
-    for (double& v : points) v = size * random.uniform();
-    return points;
-}
 
 void expect_exact(const std::vector<double>& points, int k, const char* what) {
     const Neighbors found = nearest_neighbors(points, k);
     EXPECT_EQ(found.k, static_cast<std::size_t>(k)) << what;
     EXPECT_EQ(found.count(), points.size() / 3) << what;
-    EXPECT_EQ(found.index, brute_force(points, k)) << what << ", k = " << k;
+    EXPECT_EQ(found.index, brute_force(points, k).index) << what << ", k = " << k;
 }
 
 }  // namespace
@@ -52,6 +28,10 @@ void expect_exact(const std::vector<double>& points, int k, const char* what) {
 TEST(NearestNeighbors, RandomPointsAsBruteForce) {
     for (const int k : {1, 2, 7, 20, 50}) expect_exact(random_points(1000, 1), k, "cube");
     for (const std::size_t n : {2, 3, 15, 16, 17, 31, 32, 33, 100, 257}) expect_exact(random_points(n, n), 8, "small");
+    for (const int k : {1, 3, 5, 10, 16, 31, 32, 33, 64, 100, 200, 300}) {
+        expect_exact(random_points(700, 18), k, "cube");
+        expect_exact(support::sphere_cloud(1, 600, 19).points, k, "sphere");
+    }
     expect_exact(support::sphere_cloud(3, 1000, 2).points, 20, "sphere");
     expect_exact(support::torus_cloud(1, 0.5, 0.12, 3).points, 20, "torus");
 }
@@ -59,7 +39,7 @@ TEST(NearestNeighbors, RandomPointsAsBruteForce) {
 TEST(NearestNeighbors, TiesGoToTheLowerIndex) {
     std::vector<double> grid;
     for (int i = 0; i < 9 * 9 * 9; ++i) grid.insert(grid.end(), {double(i % 9), double(i / 9 % 9), double(i / 81)});
-    for (const int k : {3, 6, 20, 26}) expect_exact(grid, k, "grid");
+    for (const int k : {3, 6, 20, 26, 90, 300}) expect_exact(grid, k, "grid");
     Random random(4);
     for (std::size_t i = 0; i < grid.size() / 3; ++i)
         for (int c = 0; c < 3; ++c) std::swap(grid[3 * i + c], grid[3 * random.below(grid.size() / 3) + c]);
@@ -77,16 +57,20 @@ TEST(NearestNeighbors, RepeatedAndDegeneratePoints) {
         const double far = i % 3 == 0 ? 1e9 : 0;
         clusters.insert(clusters.end(), {far + random.uniform(), random.uniform(), far + random.uniform()});
     }
-    expect_exact(repeated, 20, "six copies of each");
-    expect_exact(line, 20, "line");
-    expect_exact(equal, 20, "all equal");
-    expect_exact(clusters, 20, "two far clusters");
+    for (const int k : {1, 4, 5, 6, 20, 120}) {
+        expect_exact(repeated, k, "six copies of each");
+        expect_exact(line, k, "line");
+        expect_exact(equal, k, "all equal");
+        expect_exact(clusters, k, "two far clusters");
+    }
 }
 
 TEST(NearestNeighbors, AnyMagnitude) {
     std::vector<double> far = random_points(500, 7);
     for (double& v : far) v += 4e6;
     expect_exact(far, 20, "far from the origin");
+    for (double& v : far) v += 1e15;
+    expect_exact(far, 20, "so far that the places round to a few");
     expect_exact(random_points(300, 8, 1e-200), 10, "squares underflow");
     std::vector<double> huge = random_points(300, 9, 1e300);
     for (std::size_t i = 0; i < huge.size(); i += 2) huge[i] = -huge[i];
@@ -118,6 +102,37 @@ TEST(NearestNeighbors, ManyEqualPointsAreNotSlow) {
             const std::size_t pile = i % 2000, place = i / 2000;
             ASSERT_EQ(piles[i][j], static_cast<std::int32_t>(pile + 2000 * (place <= j ? j + 1 : j))) << "row " << i;
         }
+}
+
+/// Sparse after dense and dense after sparse: a radius that was typical a moment ago is of no use.
+TEST(NearestNeighbors, DensityThatJumps) {
+    Random random(20);
+    std::vector<double> points, spiral;
+    for (int i = 0; i < 1500; ++i) {
+        const double size = std::pow(10, -static_cast<double>(random.below(9)));
+        for (int c = 0; c < 3; ++c)
+            points.push_back(size * random.normal() + (c == 0 ? static_cast<double>(i % 3) : 0));
+    }
+    for (int i = -500; i < 500; ++i) spiral.insert(spiral.end(), {std::ldexp(1, i), -std::ldexp(1, i), 0});
+    for (const int k : {1, 20, 150}) {
+        expect_exact(points, k, "clusters within clusters");
+        expect_exact(spiral, k, "powers of two");
+    }
+}
+
+TEST(NearestNeighbors, FollowAPermutationOfThePoints) {
+    const std::vector<double> points = support::torus_cloud(1, 0.4, 0.05, 21).points;
+    const std::size_t n = points.size() / 3;
+    Random random(22);
+    std::vector<std::int32_t> to(n);
+    std::iota(to.begin(), to.end(), 0);
+    for (std::size_t i = n; i > 1; --i) std::swap(to[i - 1], to[random.below(i)]);
+    std::vector<double> moved(points.size());
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(&points[3 * i], 3, &moved[3 * static_cast<std::size_t>(to[i])]);
+    const Neighbors before = nearest_neighbors(points, 20), after = nearest_neighbors(moved, 20);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < 20; ++j)
+            ASSERT_EQ(after[static_cast<std::size_t>(to[i])][j], to[static_cast<std::size_t>(before[i][j])]);
 }
 
 TEST(NearestNeighbors, SameForAnyNumberOfThreads) {

@@ -1,0 +1,353 @@
+// The search of neighbor_search.h for one instruction set. Included by neighbor_search_<set>.cpp alone, each compiled
+// for its set; nothing here may have external linkage but the entry that each defines, or the linker could pick a copy
+// that the machine cannot run. Every set rounds every operation alike, and results are the exact ones: equal
+// everywhere.
+//
+// Candidates within a bound are collected without order; sorting comes once, at the end. The bound of a query comes
+// from queries near it that are done (triangle inequality), and the leaves that it has to look at from a list that its
+// whole group shares. A box whose lower bound of distances ties with the bound is weighed by its lowest index, so that
+// equal points and grids neither change the answer nor slow it down.
+#pragma once
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+#include <algorithm>
+#include <bit>
+
+#include "key_sort_kernel.h"
+#include "neighbor_search.h"
+
+namespace gaussmap {
+namespace {
+
+#define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+#ifdef __AVX2__
+constexpr int lanes = 4;
+#else
+constexpr int lanes = 2;
+#endif
+typedef double Real __attribute__((vector_size(8 * lanes)));
+typedef double RealInMemory __attribute__((vector_size(8 * lanes), aligned(8), may_alias));
+typedef long long Mask __attribute__((vector_size(8 * lanes)));
+
+constexpr double infinity = std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::max();
+
+GAUSSMAP_INLINE Real load(const double* p) {
+    return *reinterpret_cast<const RealInMemory*>(p);
+}
+GAUSSMAP_INLINE void store(double* p, Real a) {
+    *reinterpret_cast<RealInMemory*>(p) = a;
+}
+GAUSSMAP_INLINE Real all(double a) {
+    return Real{} + a;
+}
+
+GAUSSMAP_INLINE Real maximum(Real a, Real b) {
+#if defined __AVX2__
+    return (Real)_mm256_max_pd((__m256d)a, (__m256d)b);
+#elif defined __SSE2__
+    return (Real)_mm_max_pd((__m128d)a, (__m128d)b);
+#else
+    return a > b ? a : b;
+#endif
+}
+
+/// A bit a lane.
+GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
+#if defined __AVX2__
+    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask));
+#elif defined __SSE2__
+    return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
+#else
+    unsigned bits = 0;
+    for (int l = 0; l < lanes; ++l) bits |= static_cast<unsigned>(mask[l] & 1) << l;
+    return bits;
+#endif
+}
+
+#ifdef __AVX2__
+/// For every set of lanes, the 32-bit halves of those lanes, and the lanes themselves as bytes of 32-bit words.
+struct Packing {
+    alignas(32) int halves[16][8];
+    alignas(16) unsigned char bytes[16][16];
+};
+constexpr Packing make_packing() {
+    Packing packing{};
+    for (int set = 0; set < 16; ++set)
+        for (int l = 0, n = 0; l < 4; ++l) {
+            if (!(set >> l & 1)) continue;
+            packing.halves[set][2 * n] = 2 * l;
+            packing.halves[set][2 * n + 1] = 2 * l + 1;
+            for (int b = 0; b < 4; ++b) packing.bytes[set][4 * n + b] = static_cast<unsigned char>(4 * l + b);
+            ++n;
+        }
+    return packing;
+}
+constexpr Packing packing = make_packing();
+#endif
+
+struct Candidates {
+    double* distance;
+    std::int32_t* index;
+    std::size_t count;
+};
+
+/// Append the lanes under the mask; writes up to `lanes` places beyond.
+GAUSSMAP_INLINE void append(Candidates& to, Mask mask, Real distance, const std::int32_t* index) {
+#ifdef __AVX2__
+    const unsigned set = bits_of(mask);
+    const __m256i halves = _mm256_load_si256(reinterpret_cast<const __m256i*>(packing.halves[set]));
+    const __m128i bytes = _mm_load_si128(reinterpret_cast<const __m128i*>(packing.bytes[set]));
+    const __m128i from = _mm_loadu_si128(reinterpret_cast<const __m128i*>(index));
+    store(to.distance + to.count, (Real)_mm256_permutevar8x32_epi32((__m256i)distance, halves));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to.index + to.count), _mm_shuffle_epi8(from, bytes));
+    to.count += static_cast<std::size_t>(std::popcount(set));
+#else
+    for (int l = 0; l < lanes; ++l) {
+        to.distance[to.count] = distance[l];
+        to.index[to.count] = index[l];
+        to.count += static_cast<std::size_t>(mask[l] & 1);
+    }
+#endif
+}
+
+struct Box {
+    double low[3], high[3];
+};
+
+/// Bounds of squared distances between points of one box and points of others: rounding is monotone, so they hold in
+/// floating point too.
+GAUSSMAP_INLINE Real gap(const Box& box, const double* const (&low)[3], const double* const (&high)[3], std::size_t i) {
+    Real sum = Real{};
+    for (int a = 0; a < 3; ++a) {
+        const Real d = maximum(maximum(load(low[a] + i) - box.high[a], box.low[a] - load(high[a] + i)), Real{});
+        sum = a == 0 ? d * d : sum + d * d;
+    }
+    return sum;
+}
+
+/// Squared radii in which a query expects its k nearest and in which it still looks for them among the leaves of its
+/// group, as multiples of the typical squared distance of the k-th nearest of queries before.
+constexpr double wide = 2;
+inline double narrow(std::size_t k) {
+    return 1 + 1.4 / __builtin_sqrt(static_cast<double>(k));
+}
+
+struct Found {
+    double distance = infinity;  ///< squared
+    std::int32_t index = nobody;
+};
+inline bool nearer(const Found& a, const Found& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
+}
+
+/// One query at a time.
+class Search {
+  public:
+    Search(const SearchRoom& room, const QueryGroup& group) : room_(room), group_(group) {}
+
+    /// With nothing known: down the tree, nearest boxes first.
+    void alone(int query) {
+        begin(query, {});
+        visit(room_.level_count - 1, 0);
+        order();
+    }
+
+    /// Among the leaves collected, up to a bound; false where fewer than k are within it.
+    bool within(int query, double bound, std::size_t leaves);
+
+    /// List the leaves that are within a bound of a box; 0 where they are too many.
+    std::size_t collect(const Box& box, double bound);
+
+    double farthest(int query) const { return room_.found_distance[(query + 1) * room_.k - 1]; }
+
+  private:
+    void begin(int query, const Found& bound) {
+        query_ = query;
+        for (int a = 0; a < 3; ++a) q_[a] = group_.p[a][query];
+        bound_ = bound;
+        candidates_ = {room_.distance, room_.index, 0};
+    }
+    void scan(std::size_t leaf);
+    void visit(int level, std::size_t node);
+    void order();
+    void shrink();
+
+    const SearchRoom room_;
+    const QueryGroup& group_;
+    Candidates candidates_{};
+    Found bound_;
+    double q_[3] = {};
+    int query_ = 0;
+};
+
+GAUSSMAP_INLINE void Search::scan(std::size_t number) {
+    const Leaf& leaf = room_.leaves[number];
+    if (candidates_.count + leaf_points > room_.capacity) shrink();
+    Candidates candidates = candidates_;
+    const Real bound = all(bound_.distance), x = all(q_[0]), y = all(q_[1]), z = all(q_[2]);
+    for (int i = 0; i < leaf_points; i += lanes) {
+        const Real dx = load(leaf.p[0] + i) - x, dy = load(leaf.p[1] + i) - y, dz = load(leaf.p[2] + i) - z;
+        const Real distance = dx * dx + dy * dy + dz * dz;
+        append(candidates, distance <= bound, distance, leaf.index + i);
+    }
+    candidates_.count = candidates.count;
+}
+
+void Search::visit(int level, std::size_t node) {
+    const Boxes& boxes = room_.levels[level][node];
+    const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
+    const double* const low[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
+    const double* const high[3] = {boxes.high[0], boxes.high[1], boxes.high[2]};
+    double lower[children];
+    for (int c = 0; c < children; c += lanes) store(lower + c, gap(point, low, high, static_cast<std::size_t>(c)));
+    struct Child {
+        Found lower;
+        int number;
+    } sorted[children];
+    int count = 0;
+    for (int c = 0; c < children; ++c) {
+        const Found bound = {lower[c], boxes.first[c]};
+        if (!nearer(bound, bound_)) continue;
+        int at = count++;
+        for (; at > 0 && nearer(bound, sorted[at - 1].lower); --at) sorted[at] = sorted[at - 1];
+        sorted[at] = {bound, c};
+    }
+    for (int i = 0; i < count && nearer(sorted[i].lower, bound_); ++i) {
+        const std::size_t child = node * children + static_cast<std::size_t>(sorted[i].number);
+        if (level == 0)
+            scan(child);
+        else
+            visit(level - 1, child);
+    }
+}
+
+std::size_t Search::collect(const Box& box, double bound) {
+    const Real limit = all(bound);
+    std::uint32_t *from = room_.nodes[0], *to = room_.nodes[1];
+    const std::size_t most_leaves = room_.most_leaves;
+    double* const copy = room_.boxes;
+    std::size_t count = 1;
+    from[0] = 0;
+    for (int level = room_.level_count - 1; level >= 0; --level) {
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Boxes& boxes = room_.levels[level][from[i]];
+            const double* const low[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
+            const double* const high[3] = {boxes.high[0], boxes.high[1], boxes.high[2]};
+            unsigned near = 0;
+            for (int c = 0; c < children; c += lanes)
+                near |= bits_of(gap(box, low, high, static_cast<std::size_t>(c)) <= limit) << c;
+            if (next + children > most_leaves) return 0;
+            for (; near; near &= near - 1) {
+                const int c = std::countr_zero(near);
+                if (level == 0)
+                    for (int a = 0; a < 3; ++a) {
+                        copy[static_cast<std::size_t>(2 * a) * most_leaves + next] = boxes.low[a][c];
+                        copy[static_cast<std::size_t>(2 * a + 1) * most_leaves + next] = boxes.high[a][c];
+                    }
+                to[next++] = from[i] * children + static_cast<std::uint32_t>(c);
+            }
+        }
+        count = next;
+        std::swap(from, to);
+    }
+    if (from != room_.nodes[0]) std::copy(from, from + count, room_.nodes[0]);
+    return count;
+}
+
+bool Search::within(int query, double bound, std::size_t leaves) {
+    begin(query, {bound, nobody});
+    const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
+    const double *const box = room_.boxes, *low[3], *high[3];
+    for (int a = 0; a < 3; ++a) {
+        low[a] = box + static_cast<std::size_t>(2 * a) * room_.most_leaves;
+        high[a] = low[a] + room_.most_leaves;
+    }
+    for (std::size_t i = 0; i < leaves; i += lanes) {
+        unsigned near = bits_of(gap(point, low, high, i) <= all(bound_.distance));
+        for (; near; near &= near - 1) {
+            const std::size_t at = i + static_cast<std::size_t>(std::countr_zero(near));
+            if (at < leaves) scan(room_.nodes[0][at]);
+        }
+    }
+    if (candidates_.count < room_.k) return false;
+    order();
+    return true;
+}
+
+/// The k nearest candidates, in order, as the results of the query. A key is a squared distance whose lowest bits make
+/// room for the candidate's place, so that only keys that agree in all others need a second look.
+void Search::order() {
+    const std::size_t count = candidates_.count, k = room_.k;
+    const std::uint64_t places = std::bit_ceil(room_.capacity) - 1;
+    const double* const distance = room_.distance;
+    const std::int32_t* const index = room_.index;
+    for (std::size_t i = 0; i < count; ++i)
+        room_.key[i] = std::bit_cast<double>((std::bit_cast<std::uint64_t>(std::min(distance[i], most)) & ~places) | i);
+    double* const key = sort_keys(room_.key, room_.spare, count);
+    const auto bits = [key](std::size_t i) { return std::bit_cast<std::uint64_t>(key[i]); };
+    const auto place = [places](double a) { return std::bit_cast<std::uint64_t>(a) & places; };
+    bool tied = false;
+    for (std::size_t i = 0; i < std::min(k, count - 1); ++i) tied |= (bits(i) ^ bits(i + 1)) <= places;
+    if (tied)
+        for (std::size_t i = 0, end; i < k; i = end) {
+            for (end = i + 1; end < count && (bits(i) ^ bits(end)) <= places;) ++end;
+            std::sort(key + i, key + end, [=](double a, double b) {
+                return nearer({distance[place(a)], index[place(a)]}, {distance[place(b)], index[place(b)]});
+            });
+        }
+    double* const found_distance = room_.found_distance + query_ * k;
+    std::int32_t* const found = room_.found + query_ * k;
+    for (std::size_t i = 0; i < k; ++i) {
+        found_distance[i] = distance[place(key[i])];
+        found[i] = index[place(key[i])];
+    }
+}
+
+/// Keep the k nearest candidates only.
+void Search::shrink() {
+    order();
+    const double* const found_distance = room_.found_distance + query_ * room_.k;
+    const std::int32_t* const found = room_.found + query_ * room_.k;
+    std::copy(found_distance, found_distance + room_.k, room_.distance);
+    std::copy(found, found + room_.k, room_.index);
+    candidates_.count = room_.k;
+    bound_ = {found_distance[room_.k - 1], found[room_.k - 1]};
+}
+
+Box box_of(const QueryGroup& group) {
+    Box box;
+    for (int a = 0; a < 3; ++a) {
+        box.low[a] = box.high[a] = group.p[a][0];
+        for (int q = 1; q < group.count; ++q) {
+            box.low[a] = std::min(box.low[a], group.p[a][q]);
+            box.high[a] = std::max(box.high[a], group.p[a][q]);
+        }
+    }
+    return box;
+}
+
+void nearest(SearchRoom& room, const QueryGroup& group) {
+    Search search(room, group);
+    double typical = room.typical;
+    const double limit = wide * typical;
+    const double expected = narrow(room.k);
+    const std::size_t leaves = limit < infinity ? search.collect(box_of(group), limit) : 0;
+    for (int q = 0; q < group.count; ++q) {
+        const double bound = std::min(limit, expected * typical);
+        if (leaves == 0 || !(search.within(q, bound, leaves) || (bound < limit && search.within(q, limit, leaves))))
+            search.alone(q);
+        const double farthest = search.farthest(q);
+        typical = typical < infinity ? 0.75 * typical + 0.25 * farthest : farthest;
+    }
+    room.typical = typical;
+}
+
+#undef GAUSSMAP_INLINE
+
+}  // namespace
+}  // namespace gaussmap

@@ -1,0 +1,40 @@
+// Points in leaves of 16 under a tree of boxes with eight children each, both laid out for vector registers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "gaussmap/types.h"
+
+namespace gaussmap {
+
+constexpr int leaf_points = 16, children = 8;
+constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::max();
+
+/// Up to 16 points; places beyond are at infinity and belong to nobody.
+struct alignas(64) Leaf {
+    double p[3][leaf_points];
+    std::int32_t index[leaf_points];
+};
+
+/// The boxes of the children of a node and the lowest index in each; boxes beyond are infinitely far, of nobody.
+struct alignas(32) Boxes {
+    double low[3][children], high[3][children];
+    std::int32_t first[children];
+};
+
+/// levels[0][i] holds the boxes of the leaves 8i … 8i + 7, levels[l][i] those of the nodes 8i … 8i + 7 of levels[l −
+/// 1]; the last level has one node. The shape depends on the number of points alone, so no input makes the tree deep.
+struct NeighborTree {
+    std::size_t count = 0;  ///< points
+    std::vector<Leaf> leaves;
+    std::vector<std::vector<Boxes>> levels;
+};
+
+/// \throw std::invalid_argument on a non-finite point or too many points. Time O(n) beyond `spatial_order`; memory 32
+/// bytes a point, 20 more while it is built.
+NeighborTree neighbor_tree(Points points, const Execution& run);
+
+}  // namespace gaussmap
