@@ -1,6 +1,7 @@
 // gaussmap view: a picture of the curvature, or of any other value the file has.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -25,7 +26,9 @@ constexpr const char* about =
     "Draws a mesh or a cloud, coloured by its total curvature or by a property of its vertices, as a PNG. "
     "It needs no display. The same input gives the same bytes.\n\n"
     "Colours begin at 0 and end at the 98th percentile; what lies beyond has the last colour, and the legend a point "
-    "there. A plane is drawn as a plane, whatever its rounding noise. What is undefined is grey, and counted.\n\n"
+    "there. Curvatures that have a sign (k1, k2, mean, gaussian, shape_index) are blue below 0 and red above, as far "
+    "as "
+    "either way. A plane is drawn as a plane, whatever its rounding noise. What is undefined is grey, and counted.\n\n"
     "Without --from, the picture looks along the shortest side, a little from the right and from above.";
 
 constexpr const char* examples =
@@ -148,8 +151,14 @@ struct Values {
 Values property_values(const Geometry& geometry, Options& o) {
     const gaussmap::Property& property = vertex_property(geometry, o.field, o.input, "to draw");
     o.picture.label = o.field;
-    o.picture.density = o.field == "scalar_total_curvature" || o.field == "exact_density";
-    o.picture.unit = o.picture.density ? "1/unit²" : o.field == "k1" || o.field == "k2" ? "1/unit" : "";
+    const auto is_one_of = [&](const std::vector<std::string>& names) {
+        return std::find(names.begin(), names.end(), o.field) != names.end();
+    };
+    o.picture.density = is_one_of({"scalar_total_curvature", "exact_density"});
+    o.picture.diverging = is_one_of({"k1", "k2", "mean", "gaussian", "shape_index"});
+    o.picture.unit = o.picture.density || is_one_of({"gaussian", "density_error"}) ? "1/unit²"
+                     : is_one_of({"k1", "k2", "mean", "curvedness"})               ? "1/unit"
+                                                                                   : "";
     return {o.field, property.as_double(), has_normals(geometry) ? geometry.normals : std::vector<double>()};
 }
 

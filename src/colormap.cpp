@@ -32,8 +32,7 @@ std::array<std::uint8_t, 3> from_oklch(double lightness, double chroma, double h
             byte_of(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-LinearRgb linear_color(double value) {
-    const auto color = color_at(value);
+LinearRgb linear_color(std::array<std::uint8_t, 3> color) {
     return {linear_of(color[0]), linear_of(color[1]), linear_of(color[2])};
 }
 
@@ -45,6 +44,17 @@ std::array<std::uint8_t, 3> color_at(double value) {
     const double middle = 1 - (2 * t - 1) * (2 * t - 1);  // teal cannot be as vivid as the ends are
     const double chroma = (t < 0.5 ? 0.14 : 0.16) * (1 - middle) + 0.1 * middle;
     return from_oklch(0.37 + 0.56 * t, chroma, (295 - 190 * t) * std::numbers::pi / 180);
+}
+
+std::array<std::uint8_t, 3> diverging_color_at(double value) {
+    if (std::isnan(value)) return color_at(value);
+    const double t = std::min(std::abs(value), 1.0);
+    return from_oklch(0.93 - 0.48 * t, 0.16 * t, (value < 0 ? 255 : 30) * std::numbers::pi / 180);
+}
+
+std::array<std::uint8_t, 3> color_of_range(double low, double high, bool diverging, double fraction) {
+    if (!diverging) return color_at(fraction);
+    return diverging_color_at((low + fraction * (high - low)) / std::max(std::abs(low), std::abs(high)));
 }
 
 float linear_of(std::uint8_t encoded) {
@@ -67,10 +77,11 @@ std::uint8_t encoded_of(float linear) {
     return table[static_cast<std::size_t>(std::lrint(std::clamp(linear, 0.0F, 1.0F) * steps))];
 }
 
-Ramp::Ramp(double low, double high)
-    : low_(low), scale_(1 / (high - low)), undefined_(linear_color(std::numeric_limits<double>::quiet_NaN())) {
+Ramp::Ramp(double low, double high, bool diverging)
+    : low_(low), scale_(1 / (high - low)), undefined_(linear_color(color_at(std::nan("")))) {
     colors_.reserve(steps + 1);
-    for (int i = 0; i <= steps; ++i) colors_.push_back(linear_color(i / static_cast<double>(steps)));
+    for (int i = 0; i <= steps; ++i)
+        colors_.push_back(linear_color(color_of_range(low, high, diverging, i / static_cast<double>(steps))));
 }
 
 }  // namespace gaussmap

@@ -1,6 +1,7 @@
 // Colours in linear light, where they may be added and shaded.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -17,10 +18,13 @@ struct LinearRgb {
 float linear_of(std::uint8_t encoded);
 std::uint8_t encoded_of(float linear);
 
+/// The colour at a fraction in [0, 1] of the range from `low` to `high`.
+std::array<std::uint8_t, 3> color_of_range(double low, double high, bool diverging, double fraction);
+
 /// The colours of values between `low` and `high`, looked up.
 class Ramp {
   public:
-    Ramp(double low, double high);
+    Ramp(double low, double high, bool diverging);
 
     const LinearRgb& operator()(double value) const {
         const double t = (value - low_) * scale_;

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "colormap.h"
 #include "lettering.h"
 
 namespace gaussmap {
@@ -30,11 +31,12 @@ struct Bar {
 void draw_bar(Picture& picture, const Bar& bar, const Legend& legend) {
     const int first = static_cast<int>(std::lround(bar.left)), columns = static_cast<int>(std::lround(bar.width));
     const int top = static_cast<int>(std::lround(bar.top)), height = static_cast<int>(std::lround(bar.height));
-    for (int i = 0; i < columns; ++i) fill(picture, first + i, top, top + height, color_at((i + 0.5) / columns));
+    const auto color = [&](double t) { return color_of_range(legend.low, legend.high, legend.diverging, t); };
+    for (int i = 0; i < columns; ++i) fill(picture, first + i, top, top + height, color((i + 0.5) / columns));
     const int tip = (height + 1) / 2;
     for (int i = 0; i < tip; ++i) {
-        if (legend.above) fill(picture, first + columns + i, top + i, top + height - i, color_at(1));
-        if (legend.below) fill(picture, first - 1 - i, top + i, top + height - i, color_at(0));
+        if (legend.above) fill(picture, first + columns + i, top + i, top + height - i, color(1));
+        if (legend.below) fill(picture, first - 1 - i, top + i, top + height - i, color(0));
     }
 }
 

@@ -13,6 +13,7 @@ struct Legend {
     double low = 0, high = 1;
     bool below = false, above = false;  ///< there are values beyond the ends
     std::size_t undefined = 0, values = 0;
+    bool diverging = false;
 };
 
 /// Pixels that the legend takes at the bottom of a picture of this size; 0 where it is too small to read one.

@@ -96,8 +96,11 @@ Legend choose_range(Picture& picture, const std::vector<double>& values, double 
     if (!defined.empty()) {
         const auto [first, last] = std::minmax_element(defined.begin(), defined.end());
         least = *first, most = *last;
-        if (std::isnan(high)) high = percentile(defined, 0.98);
-        if (std::isnan(low)) low = least < 0 ? percentile(defined, 0.02) : 0;
+        const double last_of_most = percentile(defined, 0.98), first_of_most = percentile(defined, 0.02);
+        const double reach = std::max(std::abs(first_of_most), std::abs(last_of_most));
+        const double below = o.diverging ? -reach : first_of_most, above = o.diverging ? reach : last_of_most;
+        if (std::isnan(high)) high = o.diverging && most <= 0 ? 0 : above;
+        if (std::isnan(low)) low = least < 0 ? below : 0;
     }
     if (std::isnan(low)) low = 0;
     const double square = diagonal > 0 ? 1 / (diagonal * diagonal) : 1;
@@ -110,7 +113,8 @@ Legend choose_range(Picture& picture, const std::vector<double>& values, double 
     }
     picture.low = low, picture.high = high;
     const double slack = 1e-6 * (high - low);  // a constant value's rounding is not beyond the range
-    return {o.label, o.unit, low, high, least<low - slack, most> high + slack, picture.undefined, values.size()};
+    return {o.label,           o.unit,        low,        high, least<low - slack, most> high + slack,
+            picture.undefined, values.size(), o.diverging};
 }
 
 /// The discs of a cloud: as far as the sixth neighbour, so that neighbours overlap; not above three times the median,
@@ -176,7 +180,7 @@ Picture draw(Points vertices, Triangles faces, const std::vector<double>& values
     if (faces.empty() && box.diagonal() == 0)
         for (double& radius : radii) radius *= 0.05 * std::min(viewports[0].width, viewports[0].height);
 
-    const Ramp ramp(picture.low, picture.high);
+    const Ramp ramp(picture.low, picture.high, options.diverging);
     const Scene scene = {vertices, faces, values, unit, radii};
     const double begin = faces.empty() ? 0.5 : 0, share = (1 - begin) / static_cast<double>(views.size());
     for (std::size_t i = 0; i < views.size(); ++i) {

@@ -27,8 +27,10 @@ struct PictureOptions {
     std::array<double, 3> direction = {0, 0, 0};
     /// Upward on the picture; zero: +z, or +y for what is shortest along z.
     std::array<double, 3> up = {0, 0, 0};
+    /// The values have a sign: blue below 0, red above, light at 0 (`diverging_color_at`), both ends as far from it.
+    bool diverging = false;
     /// Values of the first and the last colour. NaN: low is 0 (the 2nd percentile where there are negative values),
-    /// high the 98th percentile.
+    /// high the 98th percentile; diverging, ± the greater of the two, and 0 on a side where there is nothing.
     double low = std::numeric_limits<double>::quiet_NaN();
     double high = std::numeric_limits<double>::quiet_NaN();
     /// The values are curvature densities, 1/length²: an automatic range that ends below 1e-9 / diagonal² is rounding
@@ -62,5 +64,8 @@ std::string png_bytes(const Picture& picture);
 /// The colour map, sRGB: dark violet through teal to bright yellow over [0, 1], the ends outside it, grey for NaN.
 /// Lightness grows evenly, so it survives grey printing and colour blindness.
 std::array<std::uint8_t, 3> color_at(double value);
+
+/// The same for signed values in [−1, 1]: blue, light grey at 0, red; as dark on either side.
+std::array<std::uint8_t, 3> diverging_color_at(double value);
 
 }  // namespace gaussmap

@@ -82,6 +82,19 @@ def test_a_field_and_its_range(gaussmap):
     assert (report["low"], report["high"]) == (-1.5, 2)
 
 
+def test_signed_curvatures_reach_as_far_either_way(gaussmap, tmp_path):
+    gaussmap("curvature", "t.ply", "--tensor", "-o", "o.ply")
+    for field in ("k2", "gaussian", "mean", "shape_index"):
+        report = gaussmap("view", "o.ply", "--field", field, "-o", "a.png", "--size", "300x200", "--json").json
+        low = -report["high"] if field in ("k2", "gaussian") else 0  # of both signs, or positive everywhere
+        assert report["low"] == low and report["high"] > 0, field
+    options = ["--field", "k2", "--from", "0,0,1", "--size", "300x300"]
+    gaussmap("view", "o.ply", "-o", "k2.png", *options)
+    seen = colours(picture(tmp_path / "k2.png")[2])
+    assert any(c[2] > c[0] + 60 for c in seen), "blue inside"
+    assert any(c[0] > c[2] + 30 for c in seen), "red outside"
+
+
 def test_the_direction_changes_the_picture(gaussmap, tmp_path):
     for name, options in {"auto": [], "top": ["--from", "0,0,1"], "side": ["--from", "0,-1,0", "--up", "0,0,1"]}.items():
         assert gaussmap("view", "t.ply", "-o", f"{name}.png", "--size", "99x99", *options).code == 0

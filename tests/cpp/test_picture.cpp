@@ -75,6 +75,48 @@ TEST(ColorMap, GetsLighterEvenlyAndClamps) {
     EXPECT_EQ(grey[1], grey[2]);
 }
 
+TEST(ColorMap, DivergingIsLightAtZeroAndAsDarkEitherWay) {
+    const auto luminance = [](double value) {
+        const auto c = diverging_color_at(value);
+        return std::cbrt(0.2126 * std::pow(c[0] / 255.0, 2.2) + 0.7152 * std::pow(c[1] / 255.0, 2.2) +
+                         0.0722 * std::pow(c[2] / 255.0, 2.2));
+    };
+    for (int i = 0; i < 50; ++i) {
+        EXPECT_GT(luminance(i / 50.0) + 0.003, luminance((i + 1) / 50.0)) << i;
+        EXPECT_NEAR(luminance(i / 50.0), luminance(-i / 50.0), 0.05) << i;
+    }
+    const auto below = diverging_color_at(-1), zero = diverging_color_at(0), above = diverging_color_at(1);
+    EXPECT_GT(below[2], below[0] + 60) << "blue";
+    EXPECT_GT(above[0], above[2] + 60) << "red";
+    EXPECT_TRUE(zero[0] == zero[1] && zero[1] == zero[2] && zero[0] > 200);
+    EXPECT_EQ(diverging_color_at(-7), below);
+    EXPECT_EQ(diverging_color_at(7), above);
+    EXPECT_EQ(diverging_color_at(undefined), color_at(undefined));
+}
+
+TEST(Picture, DivergingColoursReachAsFarEitherWay) {
+    const Square s;
+    PictureOptions o = plain();
+    o.low = o.high = undefined;
+    o.density = false;
+    const auto range = [&](const std::vector<double>& values, bool diverging) {
+        o.diverging = diverging;
+        const Picture p = draw(s.vertices, s.faces, values, {}, o);
+        return std::vector<double>{p.low, p.high};
+    };
+    EXPECT_EQ(range({-3, -3, -3, 2}, true), (std::vector<double>{-3, 3}));
+    EXPECT_EQ(range({2, 2, 2, 2}, true), (std::vector<double>{0, 2}));
+    EXPECT_EQ(range({-2, -2, -2, -2}, true), (std::vector<double>{-2, 0}));
+    EXPECT_EQ(range({0, 0, 0, 0}, true), (std::vector<double>{0, 1}));
+    EXPECT_EQ(range({2, 2, 2, 2}, false), (std::vector<double>{0, 2}));
+
+    o.diverging = true;
+    o.low = -2, o.high = 1;  // half way up to 1 is as red as −1 is blue, however far the other end is
+    const Picture p = draw(s.vertices, s.faces, {1, 1, 1, 1}, {}, o);
+    const auto half = diverging_color_at(0.5);
+    EXPECT_LE(difference(pixel(p, 100, 100), {half[0], half[1], half[2]}), 3);
+}
+
 TEST(Picture, SphereCoversItsDisc) {
     const Surface s = sphere(5);
     const Picture p = draw(s.vertices, s.faces, s.density, s.normals, plain(400, 300));
