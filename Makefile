@@ -71,6 +71,8 @@ bench: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench
 	build/bench/bench/mesh_curvature
+	build/bench/bench/cloud_speed
+	build/bench/bench/cloud_speed memory
 	build/bench/bench/knn
 
 fuzz: setup

@@ -10,17 +10,21 @@ using gaussmap::Estimator;
 constexpr Estimator estimators[] = {Estimator::automatic, Estimator::dirichlet, Estimator::corrected,
                                     Estimator::regression, Estimator::jet};
 
+bool fits_plane(const std::string& normals) {
+    return normals == "pca" || normals == "wpca";
+}
+
 /// Options that the other kind alone understands. \throw Failure (wrong usage)
 void refuse_other_kind(const CurvatureOptions& o, bool mesh) {
     const bool for_meshes = o.normals == "max" || o.normals == "angle" || o.normals == "area";
-    const bool for_clouds = o.normals == "pca" || o.normals == "jet";
+    const bool for_clouds = fits_plane(o.normals) || o.normals == "jet";
     if (mesh && for_clouds)
         throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for clouds and {} is a mesh; use auto, file, "
                                                      "estimate, max, angle or area, or --as cloud",
                                                      o.normals, o.input));
     if (!mesh && for_meshes)
         throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for meshes and {} is taken as a cloud; use auto, "
-                                                     "file, estimate, pca or jet",
+                                                     "file, estimate, pca, wpca or jet",
                                                      o.normals, o.input));
     if (!mesh && o.estimator == "corrected")
         throw Failure(Exit::wrong_usage, fmt::format("--estimator corrected is for meshes and {} is taken as a cloud; "
@@ -54,12 +58,14 @@ void plan_mesh(const CurvatureOptions& o, CurvaturePlan& plan) {
 void plan_cloud(const CurvatureOptions& o, CurvaturePlan& plan) {
     using gaussmap::Orientation;
     plan.of_cloud.k = o.k;
-    plan.of_cloud.method = o.normals == "pca" ? gaussmap::CloudNormals::pca : gaussmap::CloudNormals::jet;
+    plan.of_cloud.method = o.normals == "pca"    ? gaussmap::CloudNormals::pca
+                           : o.normals == "wpca" ? gaussmap::CloudNormals::weighted_pca
+                                                 : gaussmap::CloudNormals::jet;
     plan.of_cloud.degree = o.degree != 0 ? o.degree : o.normals == "jet" ? 2 : 4;
     plan.of_cloud.orientation = o.orient == "mst"    ? Orientation::mst
                                 : o.orient == "none" ? Orientation::none
                                                      : Orientation::local;
-    plan.normals = o.normals == "pca" ? "pca" : fmt::format("jet {}", plan.of_cloud.degree);
+    plan.normals = fits_plane(o.normals) ? o.normals : fmt::format("jet {}", plan.of_cloud.degree);
 }
 
 }  // namespace
@@ -76,8 +82,9 @@ void CurvatureOptions::declare(CommandLine& line) {
                 "file: those of the file\n"
                 "estimate: meshes max, clouds jet of degree 4\n"
                 "max, angle, area: meshes; weights of the faces around a vertex\n"
-                "pca, jet: clouds; a fitted plane, a fitted polynomial (default: auto)")
-        ->check(one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "jet"}));
+                "pca, wpca, jet: clouds; a fitted plane, the same with near points weighing more, a fitted polynomial "
+                "(default: auto)")
+        ->check(one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "wpca", "jet"}));
     line.option("--estimator", estimator, "E",
                 "dirichlet: energy of the normals (Chen 2023)\n"
                 "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
@@ -140,7 +147,7 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
     const char* why = plan.mesh ? "this is a mesh" : "the normals come from the file";
     unused("--k", !plan.mesh, why);
     unused("--orient", fitted, why);
-    unused("--degree", fitted && o.normals != "pca", fitted ? "a plane is fitted" : why);
+    unused("--degree", fitted && !fits_plane(o.normals), fitted ? "a plane is fitted" : why);
     if (o.tensor && fitted && o.orient != "mst")
         plan.notes.push_back(
             "each point has its own normal's side, so the signs of k1, k2, mean and shape_index "

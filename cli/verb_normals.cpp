@@ -40,8 +40,9 @@ void declare(CommandLine& line, Options& o) {
         ->check(one_of({"auto", "mesh", "cloud"}));
     line.option("--method", o.method, "M",
                 "max, angle, area: meshes; weights of the faces around a vertex (default: max)\n"
-                "jet, pca: clouds; a fitted polynomial, a fitted plane (default: jet)")
-        ->check(one_of({"max", "angle", "area", "jet", "pca"}));
+                "jet, pca, wpca: clouds; a fitted polynomial, a fitted plane, the same with near points weighing more "
+                "(default: jet)")
+        ->check(one_of({"max", "angle", "area", "jet", "pca", "wpca"}));
     line.group("Clouds");
     line.option("--k", o.k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)")->check(whole_number(3, 1000));
     line.option("--degree", o.degree, "N", "Degree of the jet, 1 to 4 (default: 4)")->check(whole_number(1, 4));
@@ -53,15 +54,15 @@ void declare(CommandLine& line, Options& o) {
 
 void choose_method(Options& o, bool mesh) {
     if (o.method.empty()) o.method = mesh ? "max" : "jet";
-    const bool of_clouds = o.method == "jet" || o.method == "pca";
+    const bool of_clouds = o.method == "jet" || o.method == "pca" || o.method == "wpca";
     if (mesh && of_clouds)
         throw Failure(Exit::wrong_usage, fmt::format("--method {} is for clouds and {} is a mesh; use max, angle or "
                                                      "area, or --as cloud",
                                                      o.method, o.input));
     if (!mesh && !of_clouds)
-        throw Failure(
-            Exit::wrong_usage,
-            fmt::format("--method {} is for meshes and {} is taken as a cloud; use jet or pca", o.method, o.input));
+        throw Failure(Exit::wrong_usage,
+                      fmt::format("--method {} is for meshes and {} is taken as a cloud; use jet, pca or wpca",
+                                  o.method, o.input));
 }
 
 /// Normals of the faces' vertices, and the counts.
@@ -81,7 +82,10 @@ Json estimate_on_cloud(Geometry& geometry, const Options& o, const gaussmap::Exe
     const gaussmap::DistinctPoints distinct = gaussmap::distinct_points(geometry.vertices);
     const gaussmap::Neighbors neighbors = gaussmap::nearest_neighbors(distinct.points, o.k, run);
     const double seconds_neighbors = watch.lap();
-    const auto method = o.method == "pca" ? gaussmap::CloudNormals::pca : gaussmap::CloudNormals::jet;
+    using gaussmap::CloudNormals;
+    const CloudNormals method = o.method == "pca"    ? CloudNormals::pca
+                                : o.method == "wpca" ? CloudNormals::weighted_pca
+                                                     : CloudNormals::jet;
     auto fitted = gaussmap::cloud_normals(distinct.points, neighbors, {method, o.degree, run});
     const double seconds_normals = watch.lap();
     if (o.orient == "mst") gaussmap::orient_normals(distinct.points, neighbors, fitted.normals, run);

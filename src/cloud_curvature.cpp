@@ -20,6 +20,7 @@
 #include "fan.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
+#include "neighbor_rows.h"
 #include "normal_fit.h"
 #include "ordered_cloud.h"
 #include "parallel.h"
@@ -28,8 +29,8 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::size_t grain = 4096;  ///< points a block
-constexpr std::size_t batch = 16;    ///< points that go through the stages of a block together
+constexpr std::size_t grain = 4096;         ///< points a block; whole nodes of the tree
+constexpr std::size_t batch = leaf_points;  ///< points that go through the stages of a block together
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct Energy {
@@ -92,39 +93,39 @@ struct Chains {
 /// What a block counts, and what it leaves.
 struct Block {
     std::size_t lowered = 0, boundary = 0;
-    double seconds_normals = 0, seconds_curvature = 0;
+    double seconds_neighbors = 0, seconds_normals = 0, seconds_curvature = 0;
     Chains waiting;
 };
 
 /// A cloud on its way to the result.
 struct Work {
-    const OrderedCloud& cloud;
-    const Neighbors& neighbors;
     const CloudCurvatureOptions& options;
-    bool given;                   ///< normals, which are then there already
+    OrderedCloud cloud;
+    std::size_t k = 0;            ///< neighbours that a point has
+    bool given = false;           ///< normals, which are then there already
     std::vector<double> normals;  ///< of the points of `cloud`
+    Neighbors neighbors;          ///< of all points, where a spanning tree will need them; else without rows
     std::vector<Block> blocks;
 
+    bool spanning_tree() const { return !given && options.orientation == Orientation::mst; }
     Vec3 normal(std::size_t i) const { return load(normals.data() + 3 * i); }
+    std::size_t source(std::size_t i) const { return static_cast<std::size_t>(cloud.source[i]); }
 };
 
 /// Unit normals of the points: the given ones of their first holders.
-std::vector<double> given_normals(Points normals, const OrderedCloud& cloud, const Execution& run) {
-    std::vector<double> result(3 * cloud.count());
-    for_blocks(cloud.count(), grain, run, [&](std::size_t, std::size_t i, std::size_t last) {
-        for (; i < last; ++i)
-            store(result.data() + 3 * i, unit(load(normals[static_cast<std::size_t>(cloud.source[i])])));
+void take_normals(Points normals, Work& work, const Execution& run) {
+    for_blocks(work.cloud.count(), grain, run, [&](std::size_t, std::size_t i, std::size_t last) {
+        for (; i < last; ++i) store(work.normals.data() + 3 * i, unit(load(normals[work.source(i)])));
     });
-    return result;
 }
 
 /// The last stage: densities of fans whose normals are all there.
 void measure(const Work& work, const Chains& chains, CloudCurvature& result) {
     const bool align = !work.given && work.options.orientation == Orientation::local;
-    Neighborhood corners(work.neighbors.k);
+    Neighborhood corners(work.k);
     for (const Chains::One& fan : chains.fans) {
-        const auto i = static_cast<std::size_t>(fan.point), place = static_cast<std::size_t>(work.cloud.source[i]);
-        corners.gather(work.cloud.points, i, chains.corners.data() + fan.begin, fan.size);
+        const auto i = static_cast<std::size_t>(fan.point), place = work.source(i);
+        corners.gather(work.cloud, i, chains.corners.data() + fan.begin, fan.size);
         const Energy energy = fan_energy(corners, fan.closed, work.normals.data(), work.normal(i), align);
         if (!(energy.area > 0)) continue;
         result.kappa[place] = energy.kappa;
@@ -142,30 +143,38 @@ class BlockWork {
           block_(work.blocks[b]),
           first_(first),
           last_(last),
-          around_(batch, Neighborhood(work.neighbors.k)),
-          normal_of_(work.options.method, work.options.degree, work.neighbors.k),
-          fan_(work.neighbors.k),
-          chain_(work.neighbors.k) {}
+          search_(work.cloud.tree, work.k),
+          rows_(work.spanning_tree() ? 0 : batch * work.k),
+          around_(batch, Neighborhood(work.k)),
+          normal_of_(work.options.method, work.options.degree, work.k),
+          fan_(work.k),
+          chain_(work.k) {}
 
     void run(CloudCurvature& result) {
+        Lap lap;
         for (std::size_t i = first_; i < last_; i += batch) {
             const std::size_t end = std::min(i + batch, last_);
-            auto start = Clock::now();
-            for (std::size_t j = i; j < end; ++j)
-                around_[j - i].gather(work_.cloud.points, j, work_.neighbors[j], work_.neighbors.k);
+            lap.add_to(block_.seconds_curvature);
+            find(i, end);
+            lap.add_to(block_.seconds_neighbors);
             if (!work_.given)
                 for (std::size_t j = i; j < end; ++j) fit(around_[j - i], j);
-            block_.seconds_normals += seconds_since(start);
-            start = Clock::now();
+            lap.add_to(block_.seconds_normals);
             for (std::size_t j = i; j < end; ++j) build(around_[j - i], j);
-            block_.seconds_curvature += seconds_since(start);
         }
-        const auto start = Clock::now();
         measure(work_, ready_, result);
-        block_.seconds_curvature += seconds_since(start);
+        lap.add_to(block_.seconds_curvature);
     }
 
   private:
+    /// The neighbourhoods of points [i, end), a leaf.
+    void find(std::size_t i, std::size_t end) {
+        const bool keep = work_.spanning_tree();
+        std::int32_t* rows = keep ? work_.neighbors.index.data() + i * work_.k : rows_.data();
+        search_.find(i / leaf_points, rows, work_.k, i);
+        for (std::size_t j = i; j < end; ++j) around_[j - i].gather(work_.cloud, j, rows + (j - i) * work_.k, work_.k);
+    }
+
     void fit(const Neighborhood& around, std::size_t i) {
         const NormalFit::Result fitted = normal_of_(around);
         store(work_.normals.data() + 3 * i, fitted.normal);
@@ -183,13 +192,15 @@ class BlockWork {
             const auto corner = static_cast<std::size_t>(chain_[c]);
             inside = inside && corner >= first_ && corner < last_;
         }
-        const bool ready = work_.given || (inside && work_.options.orientation != Orientation::mst);
+        const bool ready = work_.given || (inside && !work_.spanning_tree());
         (ready ? ready_ : block_.waiting).add(i, fan_.closed, chain_.data(), fan_.corners);
     }
 
     Work& work_;
     Block& block_;
     std::size_t first_, last_;
+    NeighborRows search_;
+    std::vector<std::int32_t> rows_;
     std::vector<Neighborhood> around_;
     NormalFit normal_of_;
     Fan fan_;
@@ -197,21 +208,43 @@ class BlockWork {
     Chains ready_;
 };
 
-/// Copies of a point get what its first holder got.
-void share_with_copies(const OrderedCloud& cloud, CloudCurvature& result) {
-    for (const auto& [index, first] : cloud.copies) {
+/// Neighbours, normals and fans, and densities where they can be told; the stages take turns, and share the time.
+void run_blocks(Work& work, const Execution& run, CloudCurvature& result) {
+    const auto start = Clock::now();
+    for_blocks(work.cloud.count(), grain, run, [&](std::size_t b, std::size_t first, std::size_t last) {
+        BlockWork(work, b, first, last).run(result);
+    });
+    double neighbors = 0, normals = 0, curvature = 0;
+    for (const Block& block : work.blocks) {
+        result.lowered += block.lowered;
+        result.boundary += block.boundary;
+        neighbors += block.seconds_neighbors;
+        normals += block.seconds_normals;
+        curvature += block.seconds_curvature;
+    }
+    const double all = neighbors + normals + curvature, share = all > 0 ? seconds_since(start) / all : 0;
+    result.seconds_neighbors += share * neighbors;
+    result.seconds_normals += share * normals;
+    result.seconds_curvature += share * curvature;
+}
+
+void orient(Work& work, const Execution& run) {
+    std::vector<double> points(3 * work.cloud.count());
+    for (std::size_t i = 0; i < work.cloud.count(); ++i) store(points.data() + 3 * i, work.cloud[i]);
+    orient_normals(points, work.neighbors, work.normals, run);
+}
+
+/// Back to the order of the input; copies of a point get what its first holder got.
+void place_normals(const Work& work, CloudCurvature& result) {
+    for (std::size_t i = 0; i < work.cloud.count(); ++i)
+        store(result.normals.data() + 3 * work.source(i), work.normal(i));
+    for (const auto& [index, first] : work.cloud.copies) {
         const auto to = static_cast<std::size_t>(index), from = static_cast<std::size_t>(first);
         result.density[to] = result.density[from];
         result.kappa[to] = result.kappa[from];
         if (!result.tensor.k1.empty()) copy(result.tensor, from, to);
         store(result.normals.data() + 3 * to, load(result.normals.data() + 3 * from));
     }
-}
-
-/// Back to the order of the input.
-void place_normals(const Work& work, CloudCurvature& result) {
-    for (std::size_t i = 0; i < work.cloud.count(); ++i)
-        store(result.normals.data() + 3 * static_cast<std::size_t>(work.cloud.source[i]), work.normal(i));
 }
 
 void check(Points points, Points normals, const CloudCurvatureOptions& options) {
@@ -228,51 +261,35 @@ void check(Points points, Points normals, const CloudCurvatureOptions& options) 
 CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
     check(points, normals, options);
     CloudCurvature result;
-    const bool given = !normals.empty(), tree = !given && options.orientation == Orientation::mst;
-    auto start = Clock::now();
-    const OrderedCloud cloud = ordered_cloud(points, part_of(options.run, 0, 0.1));
-    result.duplicates = cloud.copies.size();
-    result.non_finite = cloud.non_finite;
-    const auto others = static_cast<int>(std::max<std::size_t>(cloud.count(), 2) - 1);
-    const Neighbors neighbors =
-        nearest_neighbors(cloud.points, std::min(options.k, others), part_of(options.run, 0.1, 0.4));
-    result.seconds_neighbors = seconds_since(start);
+    Lap lap;
+    Work work = {options, ordered_cloud(points, part_of(options.run, 0, 0.2)), 0, false, {}, {}, {}};
+    const std::size_t count = work.cloud.count();
+    result.duplicates = work.cloud.copies.size();
+    result.non_finite = work.cloud.non_finite;
+    lap.add_to(result.seconds_neighbors);
 
-    start = Clock::now();
+    work.k = std::min<std::size_t>(static_cast<std::size_t>(options.k), std::max<std::size_t>(count, 1) - 1);
+    work.given = !normals.empty();
+    work.normals.resize(3 * count);
+    work.blocks.resize(block_count(count, grain));
+    if (work.given) take_normals(normals, work, part_of(options.run, 0.2, 0.3));
+    if (work.spanning_tree()) work.neighbors = {work.k, std::vector<std::int32_t>(count * work.k)};
     result.density.assign(points.count, nan);
     result.kappa.assign(points.count, nan);
     if (options.tensor) result.tensor = undefined_tensor(points.count);
-    Work work = {cloud, neighbors, options, given, {}, std::vector<Block>(block_count(cloud.count(), grain))};
-    if (given)
-        work.normals = given_normals(normals, cloud, part_of(options.run, 0.4, 0.5));
-    else
-        work.normals.resize(3 * cloud.count());
-    for_blocks(
-        cloud.count(), grain, part_of(options.run, 0.5, tree ? 0.7 : 0.9),
-        [&](std::size_t b, std::size_t first, std::size_t last) { BlockWork(work, b, first, last).run(result); });
-    double seconds_normals = 0, seconds_curvature = 0;
-    for (const Block& block : work.blocks) {
-        result.lowered += block.lowered;
-        result.boundary += block.boundary;
-        seconds_normals += block.seconds_normals;
-        seconds_curvature += block.seconds_curvature;
-    }
-    // The stages took turns: each gets its part of the time.
-    const double both = seconds_since(start), all = seconds_normals + seconds_curvature;
-    result.seconds_normals = all > 0 ? both * seconds_normals / all : 0;
-    result.seconds_curvature = both - result.seconds_normals;
+    lap.add_to(result.seconds_normals);
 
-    start = Clock::now();
-    if (tree) orient_normals(cloud.points, neighbors, work.normals, part_of(options.run, 0.7, 0.9));
-    result.seconds_normals += seconds_since(start);
-    start = Clock::now();
+    run_blocks(work, part_of(options.run, 0.3, work.spanning_tree() ? 0.7 : 0.9), result);
+    lap.restart();
+    if (work.spanning_tree()) orient(work, part_of(options.run, 0.7, 0.9));
+    lap.add_to(result.seconds_normals);
     for_blocks(work.blocks.size(), 1, part_of(options.run, 0.9, 1),
                [&](std::size_t b, std::size_t, std::size_t) { measure(work, work.blocks[b].waiting, result); });
+    work.cloud.tree = {};
     result.normals.assign(3 * points.count, nan);
     place_normals(work, result);
-    share_with_copies(cloud, result);
     for (const double density : result.density) result.undefined += std::isnan(density) ? 1 : 0;
-    result.seconds_curvature += seconds_since(start);
+    lap.add_to(result.seconds_curvature);
     return result;
 }
 

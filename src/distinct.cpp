@@ -1,21 +1,22 @@
 // A cloud without repetitions, in input order.
+#include <utility>
+
 #include "gaussmap/neighbors.h"
 #include "ordered_cloud.h"
-#include "vec.h"
 
 namespace gaussmap {
 
 DistinctPoints distinct_points(Points points) {
     DistinctPoints distinct;
     {
-        OrderedCloud cloud = ordered_cloud(points, {1, {}});
-        distinct.duplicates = cloud.copies.size();
-        distinct.non_finite = cloud.non_finite;
+        SpatialOrder order = distinct_order(points, {1, {}});
+        distinct.duplicates = order.copies.size();
+        distinct.non_finite = order.non_finite;
         // A point's first holder, for now; itself where it is one.
         distinct.target.assign(points.count, -1);
-        for (const std::int32_t i : cloud.source) distinct.target[static_cast<std::size_t>(i)] = i;
-        for (const Copy& copy : cloud.copies) distinct.target[static_cast<std::size_t>(copy.index)] = copy.first;
-        distinct.source = std::move(cloud.source);
+        for (const std::int32_t i : order.first) distinct.target[static_cast<std::size_t>(i)] = i;
+        for (const Copy& copy : order.copies) distinct.target[static_cast<std::size_t>(copy.index)] = copy.first;
+        distinct.source = std::move(order.first);
     }
     distinct.points.reserve(3 * distinct.source.size());
     distinct.source.clear();

@@ -3,6 +3,7 @@
 #include "neighbor_tree.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "gaussmap/neighbors.h"
 #include "parallel.h"
@@ -77,15 +78,18 @@ std::vector<Boxes> join(const std::vector<Boxes>& below) {
 }  // namespace
 
 NeighborTree neighbor_tree(Points points, const Execution& run) {
-    const std::vector<std::int32_t> order = spatial_order(points, part_of(run, 0, 0.5));
+    return neighbor_tree(points, spatial_order(points, part_of(run, 0, 0.5)), part_of(run, 0.5, 1));
+}
+
+NeighborTree neighbor_tree(Points points, const std::vector<std::int32_t>& order, const Execution& run) {
     NeighborTree tree;
-    tree.count = points.count;
-    tree.leaves.resize(block_count(points.count, leaf_points));
-    tree.levels.emplace_back(block_count(points.count, bunch), no_boxes());
-    for_blocks(tree.levels[0].size(), 64, part_of(run, 0.5, 1), [&](std::size_t, std::size_t b, std::size_t last) {
+    tree.count = order.size();
+    tree.leaves.resize(block_count(tree.count, leaf_points));
+    tree.levels.emplace_back(block_count(tree.count, bunch), no_boxes());
+    for_blocks(tree.levels[0].size(), 64, run, [&](std::size_t, std::size_t b, std::size_t last) {
         for (; b < last; ++b) {
             Entry entries[bunch];
-            const std::size_t begin = b * bunch, count = std::min(bunch, points.count - begin);
+            const std::size_t begin = b * bunch, count = std::min(bunch, tree.count - begin);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::int32_t index = order[begin + i];
                 const double* p = points[static_cast<std::size_t>(index)];
@@ -99,6 +103,22 @@ NeighborTree neighbor_tree(Points points, const Execution& run) {
     });
     while (tree.levels.back().size() > 1) tree.levels.push_back(join(tree.levels.back()));
     return tree;
+}
+
+std::vector<std::int32_t> renumber(NeighborTree& tree) {
+    std::vector<std::int32_t> source(tree.count);
+    for (std::size_t place = 0; place < tree.count; ++place)
+        source[place] = std::exchange(tree.leaves[place / leaf_points].index[place % leaf_points],
+                                      static_cast<std::int32_t>(place));
+    // The lowest index below a node is now that of the first point below it.
+    std::size_t points_a_child = leaf_points;
+    for (std::vector<Boxes>& level : tree.levels) {
+        for (std::size_t i = 0; i < level.size() * children; ++i)
+            if (i * points_a_child < tree.count)
+                level[i / children].first[i % children] = static_cast<std::int32_t>(i * points_a_child);
+        points_a_child *= children;
+    }
+    return source;
 }
 
 }  // namespace gaussmap

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "gaussmap/types.h"
 #include "lanes.h"
 #include "vec.h"
 
@@ -27,12 +26,13 @@ struct Neighborhood {
     Vec3 offset(std::size_t j) const { return {x[j], y[j], z[j]}; }
 
     /// Neighbours are taken from a row of `most` (up to k) indices, up to its first −1; none where the differences
-    /// overflow.
-    void gather(Points points, std::size_t centre, const std::int32_t* row, std::size_t most) {
-        const Vec3 origin = load(points[centre]);
+    /// overflow. `points[i]` is a position.
+    template <class Positions>
+    void gather(const Positions& points, std::size_t centre, const std::int32_t* row, std::size_t most) {
+        const Vec3 origin = position(points[centre]);
         Vec3 largest;
         for (count = 0; count < most && row[count] >= 0; ++count) {
-            const Vec3 d = load(points[static_cast<std::size_t>(row[count])]) - origin;
+            const Vec3 d = position(points[static_cast<std::size_t>(row[count])]) - origin;
             largest.x = std::max(largest.x, std::abs(d.x));
             largest.y = std::max(largest.y, std::abs(d.y));
             largest.z = std::max(largest.z, std::abs(d.z));
@@ -44,6 +44,9 @@ struct Neighborhood {
     }
 
   private:
+    static Vec3 position(const double* p) { return load(p); }
+    static Vec3 position(Vec3 p) { return p; }
+
     void rescale(double largest) {
         scale = 1;
         if (!std::isfinite(largest)) count = 0;

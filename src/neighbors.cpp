@@ -7,8 +7,9 @@
 #include <string>
 
 #include "check_cloud.h"
-#include "neighbor_search.h"
+#include "neighbor_rows.h"
 #include "parallel.h"
+#include "search_room.h"
 #include "vec.h"
 
 namespace gaussmap {
@@ -16,58 +17,8 @@ namespace {
 
 constexpr std::size_t groups_a_block = 256;
 
-NearestKernel best_kernel() {
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) return nearest_kernel_avx2;
-#endif
-    return nearest_kernel_baseline;
-}
-
-/// Owns what a SearchRoom points to.
-class Room {
-  public:
-    Room(const NeighborTree& tree, std::size_t k)
-        : distance_(2 * k + 3 * leaf_points),
-          key_(distance_.size() + 32),
-          spare_(key_.size()),
-          found_distance_(leaf_points * k),
-          boxes_(6 * (256 + k) + leaf_points),
-          index_(distance_.size()),
-          found_(leaf_points * k),
-          nodes_(2 * (256 + k)) {
-        for (const auto& level : tree.levels) levels_.push_back(level.data());
-        view.leaves = tree.leaves.data();
-        view.levels = levels_.data();
-        view.level_count = static_cast<int>(levels_.size());
-        view.k = k;
-        view.capacity = distance_.size() - leaf_points;
-        view.most_leaves = nodes_.size() / 2;
-        view.distance = distance_.data(), view.index = index_.data();
-        view.key = key_.data(), view.spare = spare_.data();
-        view.found_distance = found_distance_.data(), view.found = found_.data();
-        view.nodes[0] = nodes_.data(), view.nodes[1] = nodes_.data() + view.most_leaves;
-        view.boxes = boxes_.data();
-    }
-    SearchRoom view;
-
-  private:
-    std::vector<double> distance_, key_, spare_, found_distance_, boxes_;
-    std::vector<std::int32_t> index_, found_;
-    std::vector<std::uint32_t> nodes_;
-    std::vector<const Boxes*> levels_;
-};
-
 void check_k(int k) {
     if (k < 1) throw std::invalid_argument("k = " + std::to_string(k) + " is too small; ask for at least 1 neighbour");
-}
-
-/// The results but the query itself; it is not among them where enough copies of it come before.
-void copy_others(const std::int32_t* found, std::size_t others, std::int32_t self, std::int32_t* row) {
-    bool passed = false;
-    for (std::size_t j = 0; j < others; ++j) {
-        passed |= found[j] == self;
-        row[j] = found[j + passed];
-    }
 }
 
 }  // namespace
@@ -81,20 +32,11 @@ Neighbors nearest_neighbors(Points points, int k, NearestKernel kernel, const Ex
     if (points.count == 0) return neighbors;
     const NeighborTree tree = neighbor_tree(points, part_of(run, 0, 0.3));
     const std::size_t others = std::min(neighbors.k, points.count - 1);
-    for_blocks(
-        tree.leaves.size(), groups_a_block, part_of(run, 0.3, 1), [&](std::size_t, std::size_t l, std::size_t last) {
-            Room room(tree, others + 1);
-            for (; l < last; ++l) {
-                const Leaf& leaf = tree.leaves[l];
-                QueryGroup group;
-                group.count = static_cast<int>(std::min<std::size_t>(leaf_points, points.count - l * leaf_points));
-                std::copy(leaf.p[0], leaf.p[0] + 3 * leaf_points, group.p[0]);
-                kernel(room.view, group);
-                for (int q = 0; q < group.count; ++q)
-                    copy_others(room.view.found + static_cast<std::size_t>(q) * room.view.k, others, leaf.index[q],
-                                neighbors.index.data() + static_cast<std::size_t>(leaf.index[q]) * neighbors.k);
-            }
-        });
+    for_blocks(tree.leaves.size(), groups_a_block, part_of(run, 0.3, 1),
+               [&](std::size_t, std::size_t l, std::size_t last) {
+                   NeighborRows search(tree, others, kernel);
+                   for (; l < last; ++l) search.find(l, neighbors.index.data(), neighbors.k, 0);
+               });
     return neighbors;
 }
 

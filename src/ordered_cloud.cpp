@@ -1,6 +1,8 @@
 // Equal positions follow each other along the curve, so one look back finds the copies.
 #include "ordered_cloud.h"
 
+#include <utility>
+
 #include "check_cloud.h"
 #include "gaussmap/neighbors.h"
 #include "parallel.h"
@@ -8,8 +10,6 @@
 
 namespace gaussmap {
 namespace {
-
-constexpr std::size_t grain = 1 << 16;
 
 bool equal(Vec3 a, Vec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
@@ -41,28 +41,34 @@ std::vector<std::int32_t> order_of(Points points, const Execution& run) {
 
 }  // namespace
 
-OrderedCloud ordered_cloud(Points points, const Execution& run) {
+SpatialOrder distinct_order(Points points, const Execution& run) {
     check_countable(points);
-    OrderedCloud cloud;
-    cloud.source = order_of(points, part_of(run, 0, 0.7));
-    std::vector<std::int32_t>& source = cloud.source;
-    cloud.non_finite = points.count - source.size();
-    cloud.points.resize(3 * source.size());
-    for_blocks(source.size(), grain, part_of(run, 0.7, 1), [&](std::size_t, std::size_t i, std::size_t last) {
-        for (; i < last; ++i) store(cloud.points.data() + 3 * i, load(points[static_cast<std::size_t>(source[i])]));
-    });
+    SpatialOrder result;
+    result.first = order_of(points, run);
+    std::vector<std::int32_t>& order = result.first;
+    result.non_finite = points.count - order.size();
     std::size_t kept = 0;
-    for (std::size_t i = 0; i < source.size(); ++i) {
-        const Vec3 p = load(cloud.points.data() + 3 * i);
-        if (kept > 0 && equal(p, load(cloud.points.data() + 3 * (kept - 1)))) {
-            cloud.copies.push_back({source[i], source[kept - 1]});
+    Vec3 last;
+    for (const std::int32_t index : order) {
+        const Vec3 p = load(points[static_cast<std::size_t>(index)]);
+        if (kept > 0 && equal(p, last)) {
+            result.copies.push_back({index, order[kept - 1]});
             continue;
         }
-        store(cloud.points.data() + 3 * kept, p);
-        source[kept++] = source[i];
+        order[kept++] = index;
+        last = p;
     }
-    source.resize(kept);
-    cloud.points.resize(3 * kept);
+    order.resize(kept);
+    return result;
+}
+
+OrderedCloud ordered_cloud(Points points, const Execution& run) {
+    SpatialOrder order = distinct_order(points, part_of(run, 0, 0.6));
+    OrderedCloud cloud;
+    cloud.tree = neighbor_tree(points, order.first, part_of(run, 0.6, 1));
+    cloud.source = renumber(cloud.tree);
+    cloud.copies = std::move(order.copies);
+    cloud.non_finite = order.non_finite;
     return cloud;
 }
 

@@ -24,7 +24,7 @@ enum class NormalWeights {
 enum class CloudNormals {
     pca,  ///< smallest principal direction of the neighbours. Hoppe et al., "Surface Reconstruction from Unorganized
           ///< Points", 1992
-    weighted_pca,  ///< the same, neighbours weighing (1 − (d/h)²)² by their distance d, h that of the first one left out
+    weighted_pca,  ///< the same, neighbours weighing (1 − (d/h)²)² by their distance d
     jet,  ///< normal of a fitted polynomial height field. Cazals and Pouget, "Estimating Differential Quantities Using
           ///< Polynomial Fitting of Osculating Jets", 2005
 };

@@ -110,6 +110,7 @@ def test_report_of_a_cloud(gaussmap):
         (["--normals", "jet", "--degree", "3"], "jet 3"),
         (["--normals", "estimate", "--degree", "1"], "jet 1"),
         (["--normals", "pca"], "pca"),
+        (["--normals", "wpca"], "wpca"),
         (["--normals", "auto"], "file"),
         (["--normals", "file"], "file"),
     ],
@@ -121,7 +122,7 @@ def test_normals_of_a_cloud(gaussmap, options, normals, orient):
     assert report["normals"] == normals
     assert report["orient"] == (None if normals == "file" else orient)
     if orient != "none" or normals == "file":
-        rough = normals in ("pca", "jet 1")
+        rough = normals in ("pca", "wpca", "jet 1")
         assert report["density"]["p50"] == pytest.approx(2, rel=0.2 if rough else 0.1)
     else:
         assert report["density"]["mean"] > 10, "signs as the fit left them disagree somewhere on a sphere"

@@ -53,7 +53,7 @@ USAGE = [
     ("curvature cube.off --truth", "--truth: a value is missing; write one after it"),
     (
         "curvature cube.off --normals maxx",
-        "--normals: 'maxx' is not one of auto, file, estimate, area, angle, max, pca, jet; did you mean 'max'?",
+        "--normals: 'maxx' is not one of auto, file, estimate, area, angle, max, pca, wpca, jet; did you mean 'max'?",
     ),
     (
         "curvature cube.off --estimator lepski",
@@ -73,7 +73,7 @@ USAGE = [
     ("curvature cloud.xyz --seed x", "--seed: 'x' is not a whole number from 0 to 9223372036854775807"),
     (
         "curvature cloud.xyz --normals max",
-        "--normals max is for meshes and cloud.xyz is taken as a cloud; use auto, file, estimate, pca or jet",
+        "--normals max is for meshes and cloud.xyz is taken as a cloud; use auto, file, estimate, pca, wpca or jet",
     ),
     (
         "curvature cube.off --normals jet",
@@ -102,7 +102,7 @@ USAGE = [
     ),
     (
         "normals cloud.xyz --method max -o n.ply",
-        "--method max is for meshes and cloud.xyz is taken as a cloud; use jet or pca",
+        "--method max is for meshes and cloud.xyz is taken as a cloud; use jet, pca or wpca",
     ),
     ("normals cloud.xyz --orient local -o n.ply", "--orient: 'local' is not one of mst, none"),
     ("curvature cube.off -o x.las", f"x.las: unknown extension of an output; the known ones are {KNOWN}, .png"),

@@ -166,7 +166,7 @@ def test_normals_of_a_mesh(gaussmap, tmp_path, method):
     assert ours["nx"] != exact["nx"]
 
 
-@pytest.mark.parametrize("options, name", [([], "jet 4"), (["--degree", 2], "jet 2"), (["--method", "pca"], "pca")])
+@pytest.mark.parametrize("options, name", [([], "jet 4"), (["--degree", 2], "jet 2"), (["--method", "pca"], "pca"), (["--method", "wpca"], "wpca")])
 def test_normals_of_a_cloud(gaussmap, tmp_path, options, name):
     gaussmap("shape", "sphere", "--subdivisions", 4, "-o", "s.ply")
     gaussmap("convert", "s.ply", "-o", "s.xyz")

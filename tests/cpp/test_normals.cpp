@@ -73,7 +73,7 @@ std::vector<double> oriented_slowly(const std::vector<double>& points, const Nei
 
 TEST(CloudNormals, UnitAndUpward) {
     const Cloud torus = support::torus_cloud(1, 0.5, 0.1, 1);
-    for (const CloudNormals method : {CloudNormals::pca, CloudNormals::jet}) {
+    for (const CloudNormals method : {CloudNormals::pca, CloudNormals::weighted_pca, CloudNormals::jet}) {
         const CloudNormalsResult result = fit(torus, method, 3);
         EXPECT_EQ(result.undefined, 0u);
         EXPECT_EQ(result.lowered, 0u);
@@ -94,7 +94,53 @@ TEST(CloudNormals, OrdersOfConvergence) {
         EXPECT_LT(after, before / best_possible[degree]) << "degree " << degree;
     }
     EXPECT_LT(angle_error(fit(fine, CloudNormals::jet, 4).normals, fine.normals), 3e-5);
-    EXPECT_LT(angle_error(fit(fine, CloudNormals::pca, 1).normals, fine.normals), 0.03);
+    const double plain = angle_error(fit(fine, CloudNormals::pca, 1).normals, fine.normals);
+    EXPECT_LT(plain, 0.03);
+    EXPECT_LT(angle_error(fit(fine, CloudNormals::weighted_pca, 1).normals, fine.normals), plain / 2);
+}
+
+/// Second moments by the definition, weights and all, and the eigenvector by turning the normal until nothing improves.
+TEST(CloudNormals, PrincipalDirectionsAsTheDefinition) {
+    const Cloud torus = support::ellipsoid_cloud(1, 0.7, 0.05, 300, 15);
+    const std::size_t k = 11;
+    const Neighbors neighbors = nearest_neighbors(torus.points, k);
+    for (const CloudNormals method : {CloudNormals::pca, CloudNormals::weighted_pca}) {
+        const std::vector<double> normals = cloud_normals(torus.points, neighbors, {method, 1, {}}).normals;
+        for (std::size_t i = 0; i < torus.count(); ++i) {
+            std::vector<std::array<double, 4>> members = {{0, 0, 0, 1}};  // difference and weight
+            double farthest = 0;
+            for (std::size_t j = 0; j < k; ++j) {
+                std::array<double, 4> d = {0, 0, 0, 1};
+                for (std::size_t c = 0; c < 3; ++c)
+                    d[c] = torus.points[3 * static_cast<std::size_t>(neighbors[i][j]) + c] - torus.points[3 * i + c];
+                farthest = std::max(farthest, dot3(d.data(), d.data()));
+                members.push_back(d);
+            }
+            double all = 0, mean[3] = {}, moments[3][3] = {};
+            for (auto& d : members) {
+                const double inside = 1 - dot3(d.data(), d.data()) / farthest * double(k) / double(k + 1);
+                if (method == CloudNormals::weighted_pca) d[3] = inside * inside;
+                all += d[3];
+                for (int c = 0; c < 3; ++c) mean[c] += d[3] * d[c];
+            }
+            for (const auto& d : members)
+                for (int r = 0; r < 3; ++r)
+                    for (int c = 0; c < 3; ++c) moments[r][c] += d[3] * (d[r] - mean[r] / all) * (d[c] - mean[c] / all);
+            // An eigenvector, and no direction has less: M − λ is positive but for rounding.
+            const double* n = &normals[3 * i];
+            double image[3], lambda = 0, trace = 0;
+            for (int r = 0; r < 3; ++r)
+                image[r] = dot3(moments[r], n), lambda += n[r] * image[r], trace += moments[r][r];
+            for (int r = 0; r < 3; ++r) ASSERT_NEAR(image[r], lambda * n[r], 1e-14 * trace) << i;
+            for (int r = 0; r < 3; ++r) {
+                const int s = (r + 1) % 3;
+                ASSERT_GE(moments[r][r] - lambda, -1e-14 * trace) << i;
+                ASSERT_GE((moments[r][r] - lambda) * (moments[s][s] - lambda) - moments[r][s] * moments[r][s],
+                          -1e-14 * trace * trace)
+                    << i;
+            }
+        }
+    }
 }
 
 TEST(CloudNormals, PlanesInAnyDirection) {
@@ -105,7 +151,7 @@ TEST(CloudNormals, PlanesInAnyDirection) {
         Cloud plane = flat;
         plane.points = support::times(rotation, flat.points);
         const std::vector<double> expected = support::times(rotation, flat.normals);
-        for (const CloudNormals method : {CloudNormals::pca, CloudNormals::jet}) {
+        for (const CloudNormals method : {CloudNormals::pca, CloudNormals::weighted_pca, CloudNormals::jet}) {
             const CloudNormalsResult result = fit(plane, method, 2);
             EXPECT_EQ(result.undefined, 0u);
             EXPECT_LT(angle_error(result.normals, expected), 1e-14);
