@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "automatic_cloud.h"
 #include "check.h"
 #include "check_cloud.h"
 #include "clock.h"
@@ -260,6 +261,7 @@ void check(Points points, Points normals, const CloudCurvatureOptions& options) 
 
 CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
     check(points, normals, options);
+    if (options.estimator == Estimator::automatic) return automatic_cloud(points, normals, options);
     CloudCurvature result;
     Lap lap;
     Work work = {options, ordered_cloud(points, part_of(options.run, 0, 0.2)), 0, false, {}, {}, {}};

@@ -2,6 +2,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "scale_ladder.h"
 
 namespace gaussmap {
 
@@ -22,11 +25,20 @@ const char* estimator_name(Estimator estimator) {
 }
 
 const char* choice_name(std::uint8_t choice) {
-    constexpr const char* names[] = {"none", "dirichlet", "corrected", "regression", "jet 2", "jet 3", "jet 4"};
-    if (choice >= std::size(names))
-        throw std::invalid_argument("choice = " + std::to_string(choice) + " is outside [0, " +
-                                    std::to_string(std::size(names)) + ")");
-    return names[choice];
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list(first_rung_choice + most_rungs * families);
+        list[0] = "none", list[1] = "quadric 9", list[2] = "quartic 24", list[3] = "corrected";
+        constexpr const char* family_names[families] = {"quadric ", "half mean quadric ", "mean quadric ",
+                                                        "quartic free "};
+        for (int rung = 0; rung < most_rungs; ++rung)
+            for (int family = 0; family < families; ++family)
+                list[rung_choice(rung, static_cast<Family>(family))] =
+                    family_names[family] + std::to_string(rung_neighbors(rung));
+        return list;
+    }();
+    if (choice >= names.size() || names[choice].empty())
+        throw std::invalid_argument("choice = " + std::to_string(choice) + " is never written");
+    return names[choice].c_str();
 }
 
 void check_estimator(Estimator estimator, Input input, bool confidence) {
@@ -34,8 +46,7 @@ void check_estimator(Estimator estimator, Input input, bool confidence) {
     if (estimator == Estimator::corrected && input == Input::cloud)
         throw std::invalid_argument(shown + " is for meshes; a cloud has no faces");
     const bool fits = estimator != Estimator::dirichlet && estimator != Estimator::corrected;
-    if (fits) throw std::invalid_argument(shown + " is not there yet; use dirichlet");
-    if (confidence) throw std::invalid_argument(shown + " has no confidence: nothing is fitted");
+    if (confidence && !fits) throw std::invalid_argument(shown + " has no confidence: nothing is fitted");
 }
 
 }  // namespace gaussmap

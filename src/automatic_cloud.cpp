@@ -1,0 +1,97 @@
+#include "automatic_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "automatic.h"
+#include "clock.h"
+#include "neighbor_rows.h"
+#include "ordered_cloud.h"
+#include "parallel.h"
+#include "shape_operator.h"
+#include "shape_tensor.h"
+
+namespace gaussmap {
+namespace {
+
+Elements elements_of(const OrderedCloud& cloud) {
+    static_assert(Elements::block % leaf_points == 0);
+    Elements elements;
+    elements.count = cloud.count();
+    elements.position = [&cloud](std::size_t i) { return cloud[i]; };
+    elements.neighbors = [&cloud](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
+        const auto stride = static_cast<std::size_t>(k);
+        const std::size_t others = std::min(stride, cloud.count() - 1);
+        if (others < stride) std::fill(rows, rows + (last - first) * stride, -1);
+        if (others == 0) return;
+        NeighborRows search(cloud.tree, others);
+        for (std::size_t i = first; i < last; i += leaf_points) search.find(i / leaf_points, rows, stride, first);
+    };
+    return elements;
+}
+
+/// Diagonal of the box; 0 for no points.
+double diagonal(const OrderedCloud& cloud) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    Vec3 low = {infinity, infinity, infinity}, high = -low;
+    for (std::size_t i = 0; i < cloud.count(); ++i) {
+        const Vec3 p = cloud[i];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return cloud.count() == 0 ? 0 : length(high - low);
+}
+
+/// Element i's values, to a place of the result.
+void place(const AutomaticCurvature& found, std::size_t i, Points normals, std::size_t to,
+           const CloudCurvatureOptions& options, CloudCurvature& result) {
+    Vec3 normal = found.normal[i];
+    double sign = 1;
+    // Looking as the given normal does; a fitted normal says nothing of the side, so up.
+    if (!normals.empty() ? dot(normal, load(normals[to])) < 0 : dot(normal, upward(normal)) < 0)
+        normal = -normal, sign = -1;
+    result.density[to] = found.density[i];
+    result.choice[to] = found.choice[i];
+    store(result.normals.data() + 3 * to, normal);
+    if (options.confidence) result.error[to] = found.error[i];
+    if (options.tensor && finite(normal)) store(result.tensor, to, principal(found.tensor[i], sign, normal));
+}
+
+}  // namespace
+
+CloudCurvature automatic_cloud(Points points, Points normals, const CloudCurvatureOptions& options) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    CloudCurvature result;
+    Lap lap;
+    const OrderedCloud cloud = ordered_cloud(points, part_of(options.run, 0, 0.05));
+    result.duplicates = cloud.copies.size();
+    result.non_finite = cloud.non_finite;
+    lap.add_to(result.seconds_neighbors);
+
+    result.density.assign(points.count, nan);
+    result.kappa.assign(points.count, nan);
+    result.normals.assign(3 * points.count, nan);
+    result.choice.assign(points.count, 0);
+    if (options.confidence) result.error.assign(points.count, nan);
+    if (options.tensor) result.tensor = undefined_tensor(points.count);
+    if (const double size = diagonal(cloud); std::isfinite(size) && size > 0) {
+        const AutomaticCurvature found = automatic_curvature(elements_of(cloud), size, part_of(options.run, 0.05, 1));
+        result.lowered = found.lowered;
+        for (std::size_t i = 0; i < cloud.count(); ++i)
+            place(found, i, normals, static_cast<std::size_t>(cloud.source[i]), options, result);
+    }
+    for (const auto& [index, first] : cloud.copies) {
+        const auto to = static_cast<std::size_t>(index), from = static_cast<std::size_t>(first);
+        result.density[to] = result.density[from];
+        result.choice[to] = result.choice[from];
+        store(result.normals.data() + 3 * to, load(result.normals.data() + 3 * from));
+        if (options.confidence) result.error[to] = result.error[from];
+        if (options.tensor) copy(result.tensor, from, to);
+    }
+    for (const double density : result.density) result.undefined += std::isnan(density) ? 1 : 0;
+    lap.add_to(result.seconds_curvature);
+    return result;
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,69 @@
+// The neighbours of an element as a surface patch: height fields over its tangent plane, in two kinds of coordinates.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "frame.h"
+#include "height_fit.h"
+#include "vec.h"
+
+namespace gaussmap {
+
+/// How a neighbour's place in the tangent plane is told.
+enum class Chart {
+    monge,  ///< by its projection ρ
+    chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (12))
+};
+
+/// What a neighbour weighs, by its squared distance in units of the patch's size.
+struct EqualWeights {
+    double operator()(double) const { return 1; }
+};
+
+/// 1 / |d|¹⁰, the inverse of the squared remainder of a quartic. Nearer than a fifth of the size all weigh alike, so
+/// that a pair of almost equal points does not decide alone.
+struct RemainderWeights {
+    double operator()(double squared) const {
+        const double r = 1 / std::max(squared, 0.04), r2 = r * r;
+        return r2 * r2 * r;
+    }
+};
+
+/// Where neighbours are seen from.
+struct View {
+    Vec3 normal;  ///< unit: heights are along it
+    Vec3 foot;    ///< the origin, as a difference from the element
+    double size;  ///< unit of lengths
+};
+
+/// Take in `count` neighbours, given as differences from the element; with `self`, the element too.
+template <int Degree, class Weights = EqualWeights>
+Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool self, const View& view, Chart chart,
+              Weights weights = {}) {
+    const Frame frame = frame_about(view.normal);
+    const double unit = 1 / view.size;
+    const auto add = [&](Vec3 d) {
+        double u = unit * dot(d, frame.u), v = unit * dot(d, frame.v);
+        const double height = unit * dot(d, frame.n), flat = u * u + v * v, squared = flat + height * height;
+        if (chart == Chart::chord) {
+            // Where the surface stands upright the direction is lost: no farther out than four times the projection.
+            const double stretch = flat > 0 ? std::min(std::sqrt(squared / flat), 4.0) : 1;
+            u *= stretch, v *= stretch;
+        }
+        moments.add(u, v, height, weights(squared));
+    };
+    moments.clear();
+    if (self) add(-view.foot);
+    for (int j = 0; j < count; ++j) add(neighbors[j] - view.foot);
+    return frame;
+}
+
+/// The view from the fitted surface itself: its foot under the element, its normal.
+template <class Coefficients>
+void settle(View& view, const Frame& frame, const Coefficients& c) {
+    view.foot = view.foot + view.size * c[0] * frame.n;
+    view.normal = unit(frame.n - c[1] * frame.u - c[2] * frame.v);
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,304 @@
+// Each rung fits half as many neighbours again as the one below. The error of a fit is its variance, known from the
+// noise, and its bias, told by what the next rung changes beyond the two fits' noise; both averaged over the surface
+// near the element, without which the choice would follow the noise. Comparable: Lepski's rule, 1990, and the
+// refined residual squares criterion of Fan and Gijbels, 1995, which choose a bandwidth from such changes.
+#include "scale_ladder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "first_look.h"
+#include "parallel.h"
+#include "patch.h"
+#include "shape_tensor.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float never = std::numeric_limits<float>::infinity();
+constexpr double growth = 1.5;  ///< of the neighbours from rung to rung
+
+/// What is known of each family. The variances are those of the geometry alone: discs filled evenly, k neighbours
+/// averaged with the kernel 1 − (d/h)².
+struct Traits {
+    double variance;  ///< relative to the fit's
+    double change;    ///< variance of the change to the next rung, relative to the family's own
+    double bias;  ///< how much of the bias the next rung adds to it: growth of h² (quadrics) or h⁴ (quartics), less 1
+};
+constexpr std::array<Traits, families> traits = {
+    {{1, 0.70, growth - 1}, {0.215, 0.37, growth - 1}, {0.08, 0.40, growth - 1}, {1, 0.71, growth* growth - 1}}};
+
+constexpr bool of_quartic(int family) {
+    return family == static_cast<int>(Family::quartic);
+}
+
+using Field = std::vector<float>;
+
+/// What a rung found, an element each; NaN where it was not on the rung. [2]: of the quadric and of the quartic.
+struct Rung {
+    Field size;                   ///< distance of the last neighbour
+    Field variance[2], trace[2];  ///< of the density and of the shape operator, for heights of unit variance
+    Field residual[2];            ///< variance of the heights about the fit
+    Field density[families];      ///< |S|², its bias by noise included
+    std::vector<Symmetric3> tensor[families];
+
+    explicit Rung(std::size_t count) : size(count, nan) {
+        for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = size;
+        for (int f = 0; f < families; ++f) density[f] = size, tensor[f].resize(count);
+    }
+};
+
+class Ladder {
+  public:
+    Ladder(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
+           AutomaticCurvature& result, const Execution& run)
+        : elements_(elements),
+          scale_(scale),
+          graph_(graph),
+          run_{run.threads, {}},
+          active_(std::move(active)),
+          result_(result),
+          view_(elements.count),
+          noise_(elements.count, nan),
+          settled_(elements.count, 0),
+          best_(elements.count),
+          lower_(elements.count),
+          upper_(elements.count) {
+        for (std::size_t i = 0; i < elements.count; ++i) {
+            const double error = result.error[i];
+            best_[i] = std::isfinite(error) ? static_cast<float>(error * error) : never;
+        }
+        for (int f = 0; f < families; ++f) dead_[f].assign(elements.count, 0), least_[f].assign(elements.count, never);
+    }
+
+    void climb(const Execution& run) {
+        for (int rung = 0; rung < most_rungs && rung_neighbors(rung) < static_cast<int>(elements_.count); ++rung) {
+            if (std::find(active_.begin(), active_.end(), 1) == active_.end()) break;
+            fit(rung);
+            average(rung);
+            if (rung > 0) {
+                weigh(rung - 1);
+                let_go();
+            }
+            std::swap(lower_, upper_);
+            if (run.progress && !run.progress((rung + 1.0) / most_rungs)) throw Cancelled();
+        }
+    }
+
+  private:
+    void fit(int rung);
+    void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
+                     Moments<4>& quartic);
+    void average(int rung);
+    void weigh(int rung);
+    void estimate_noise(const Field& residual, const Field& wider);
+    void weigh_family(int rung, int family, const Field& residual);
+    void let_go();
+
+    /// Call body(element, row of k neighbours) for the active elements.
+    template <class Body>
+    void for_active(int k, Body&& body) {
+        for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t first, std::size_t last) {
+            if (std::find(active_.begin() + static_cast<std::ptrdiff_t>(first),
+                          active_.begin() + static_cast<std::ptrdiff_t>(last),
+                          1) == active_.begin() + static_cast<std::ptrdiff_t>(last))
+                return;
+            std::vector<std::int32_t> rows((last - first) * static_cast<std::size_t>(k));
+            elements_.neighbors(first, last, k, rows.data());
+            body(first, last, rows.data());
+        });
+    }
+
+    Vec3 difference(std::size_t from, std::size_t to) const {
+        return scale_ * (elements_.position(to) - elements_.position(from));
+    }
+
+    const Elements& elements_;
+    double scale_;
+    const ElementGraph& graph_;
+    Execution run_;
+    std::vector<std::uint8_t> active_;
+    AutomaticCurvature& result_;
+    std::vector<View> view_;
+    Field noise_;  ///< variance of the heights
+    std::vector<std::uint8_t> settled_, dead_[families];
+    Field best_, least_[families];  ///< squared errors: of what `result` holds, and of each family's best
+    Rung lower_, upper_;
+};
+
+void Ladder::fit(int rung) {
+    upper_ = Rung(elements_.count);
+    const int k = rung_neighbors(rung);
+    for_active(k, [&](std::size_t first, std::size_t last, const std::int32_t* rows) {
+        std::vector<Vec3> neighbors(static_cast<std::size_t>(k));
+        Moments<2> quadric;
+        Moments<4> quartic;
+        for (std::size_t i = first; i < last; ++i) {
+            if (!active_[i]) continue;
+            const std::int32_t* row = rows + (i - first) * static_cast<std::size_t>(k);
+            int count = 0;
+            for (; count < k && row[count] >= 0; ++count)
+                neighbors[static_cast<std::size_t>(count)] = difference(i, static_cast<std::size_t>(row[count]));
+            if (count == k) fit_element(i, rung, neighbors, count, quadric, quartic);
+        }
+    });
+}
+
+/// The view is settled on the quadric, which noise sways least.
+void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
+                         Moments<4>& quartic) {
+    View& view = view_[i];
+    if (rung == 0) view = {principal_normal(neighbors, count), {}, 1};
+    view.size = length(neighbors[static_cast<std::size_t>(count) - 1]);
+    if (!finite(view.normal) || !(view.size > 0)) return;
+    HeightField<2> curved;
+    for (int turn = rung == 0 ? 2 : 1; turn > 0; --turn) {
+        const Frame frame = collect(quadric, neighbors.data(), count, true, view, Chart::chord);
+        if (!quadric.solve(true, curved)) return;
+        settle(view, frame, curved.c);
+        if (!finite(view.normal)) return;
+    }
+    const Frame frame = collect(quartic, neighbors.data(), count, true, view, Chart::chord);
+    HeightField<4> full;
+    if (!quartic.solve(true, curved)) return;
+    upper_.size[i] = static_cast<float>(view.size);
+    const double size4 = std::pow(view.size, 4), size6 = std::pow(view.size, 6);
+    const auto keep = [&](int q, Family family, const auto& field) {
+        const SurfaceJet jet = surface_jet(field.c, frame, view.size);
+        const auto f = static_cast<int>(family);
+        upper_.tensor[f][i] = jet.tensor;
+        upper_.density[f][i] = static_cast<float>(squared_norm(jet.tensor));
+        upper_.variance[q][i] = static_cast<float>(density_variance(field) / size6);
+        upper_.trace[q][i] = static_cast<float>(shape_variance(field) / size4);
+        upper_.residual[q][i] = static_cast<float>(field.residual / std::max(1, field.free) * view.size * view.size);
+    };
+    keep(0, Family::quadric, curved);
+    if (quartic.solve(true, full)) keep(1, Family::quartic, full);
+}
+
+/// Shape operators of the quadrics, averaged over up to `most_samples` of the nearest k, with the weights 1 − (d/h)².
+void Ladder::average(int rung) {
+    constexpr int most_samples = 128;
+    const int k = rung_neighbors(rung), stride = (k + most_samples - 1) / most_samples;
+    const auto quadric = static_cast<int>(Family::quadric);
+    for_active(k, [&](std::size_t first, std::size_t last, const std::int32_t* rows) {
+        for (std::size_t i = first; i < last; ++i) {
+            if (!active_[i] || !std::isfinite(upper_.density[quadric][i])) continue;
+            const std::int32_t* row = rows + (i - first) * static_cast<std::size_t>(k);
+            for (const auto& [family, members] : {std::pair(Family::half_mean, k / 2), std::pair(Family::mean, k)}) {
+                const double reach = squared(difference(i, static_cast<std::size_t>(row[members - 1])));
+                const Vec3 normal = view_[i].normal;
+                Symmetric3 sum = upper_.tensor[quadric][i];
+                double weights = 1;
+                for (int j = 0; j < members; j += stride) {
+                    const auto other = static_cast<std::size_t>(row[j]);
+                    if (!std::isfinite(upper_.density[quadric][other])) continue;
+                    const double weight = 1 - squared(difference(i, other)) / reach;
+                    const double along = dot(view_[other].normal, normal);
+                    // Other sheets and far sides look elsewhere.
+                    if (!(weight > 0) || std::abs(along) < 0.3) continue;
+                    const double sign = along < 0 ? -1 : 1;
+                    add(sum, sign * weight, carried(upper_.tensor[quadric][other], sign * view_[other].normal, normal));
+                    weights += weight;
+                }
+                Symmetric3 mean;
+                add(mean, 1 / weights, sum);
+                const auto f = static_cast<int>(family);
+                upper_.tensor[f][i] = mean;
+                upper_.density[f][i] = static_cast<float>(squared_norm(mean));
+            }
+        }
+    });
+}
+
+constexpr int reach_of_errors = 30, reach_of_variances = 15;  ///< steps of diffusion
+
+/// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told.
+void Ladder::estimate_noise(const Field& residual, const Field& wider) {
+    for (std::size_t i = 0; i < elements_.count; ++i) {
+        if (settled_[i] || !std::isfinite(residual[i]) || !std::isfinite(wider[i])) continue;
+        noise_[i] = static_cast<float>(noise_variance(residual[i], wider[i]));
+        settled_[i] = lower_.size[i] * lower_.size[i] > 42 * residual[i];
+    }
+}
+
+/// Take a family's value where it promises a smaller error than what there is.
+void Ladder::weigh_family(int rung, int family, const Field& residual) {
+    const Traits& known = traits[static_cast<std::size_t>(family)];
+    const int q = of_quartic(family) ? 1 : 0;
+    const std::size_t count = elements_.count;
+    const auto unbiased = [&](const Rung& on, std::size_t i) {
+        return on.density[family][i] - noise_[i] * known.variance * on.trace[q][i];
+    };
+    Field variance(count), change(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        // The square of what noise adds to the density is of second order, and counts where it is not small.
+        const double second = noise_[i] * known.variance * lower_.trace[q][i];
+        variance[i] = static_cast<float>(noise_[i] * known.variance * lower_.variance[q][i] + second * second);
+        change[i] = static_cast<float>(std::pow(unbiased(upper_, i) - unbiased(lower_, i), 2));
+    }
+    diffuse(variance, graph_, reach_of_variances, run_);
+    diffuse(change, graph_, reach_of_errors, run_);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!active_[i] || !std::isfinite(lower_.density[family][i])) continue;
+        // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above.
+        const bool misfit =
+            residual[i] > 2.0f * noise_[i] && lower_.size[i] * lower_.size[i] > 20 * noise_[i] && rung > 0;
+        dead_[family][i] |= misfit ? 1 : 0;
+        if (dead_[family][i]) continue;
+        const double bias = std::max(0.0, change[i] - known.change * variance[i]) / (known.bias * known.bias);
+        const auto risk = static_cast<float>(variance[i] + bias);
+        if (!(risk < never)) continue;
+        least_[family][i] = std::min(least_[family][i], risk);
+        // Far above its own best it will not come back.
+        if (risk > 30 * least_[family][i]) dead_[family][i] = 1;
+        if (!(risk < best_[i])) continue;
+        best_[i] = risk;
+        result_.density[i] = std::max(0.0, unbiased(lower_, i));
+        result_.error[i] = std::sqrt(risk);
+        result_.normal[i] = view_[i].normal;
+        result_.tensor[i] = lower_.tensor[family][i];
+        result_.choice[i] = rung_choice(rung, static_cast<Family>(family));
+    }
+}
+
+void Ladder::weigh(int rung) {
+    Field residual[2] = {lower_.residual[0], lower_.residual[1]};
+    Field wider = upper_.residual[1];
+    for (Field* field : {&residual[0], &residual[1], &wider}) diffuse(*field, graph_, reach_of_variances, run_);
+    estimate_noise(residual[1], wider);
+    for (int family = 0; family < families; ++family) weigh_family(rung, family, residual[of_quartic(family) ? 1 : 0]);
+}
+
+/// Elements on which every family has had its best leave the ladder, once their neighbours do not need them either.
+void Ladder::let_go() {
+    std::vector<std::uint8_t> wanted(elements_.count, 0);
+    for (std::size_t i = 0; i < elements_.count; ++i) {
+        if (!active_[i]) continue;
+        for (int family = 0; family < families; ++family) wanted[i] |= dead_[family][i] ? 0 : 1;
+    }
+    for (std::size_t i = 0; i < elements_.count; ++i) {
+        if (!active_[i] || wanted[i]) continue;
+        bool needed = false;
+        for (std::size_t j = 0; j < ElementGraph::degree && graph_[i][j] >= 0; ++j)
+            needed = needed || wanted[static_cast<std::size_t>(graph_[i][j])] == 1;
+        active_[i] = needed ? 1 : 0;
+    }
+}
+
+}  // namespace
+
+int rung_neighbors(int rung) {
+    return static_cast<int>(look_neighbors * std::pow(growth, rung));
+}
+
+void climb(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
+           AutomaticCurvature& result, const Execution& run) {
+    Ladder(elements, scale, graph, std::move(active), result, run).climb(run);
+}
+
+}  // namespace gaussmap

@@ -1,0 +1,33 @@
+// The ladder of scales for noisy elements (docs/method.md, "Choosing from the data").
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "automatic.h"
+#include "element_graph.h"
+
+namespace gaussmap {
+
+/// The fits that are tried on every rung: a quadric and a quartic in chords, and the quadric's shape operator averaged
+/// over half the neighbours it was fitted to, and over all of them.
+enum class Family : std::uint8_t { quadric, half_mean, mean, quartic };
+constexpr int families = 4;
+
+/// Neighbours on a rung, from 0 up: half as many again as on the one below.
+int rung_neighbors(int rung);
+constexpr int most_rungs = 13;
+
+/// The choice that stands for a family on a rung.
+constexpr std::uint8_t first_rung_choice = 16;
+constexpr std::uint8_t rung_choice(int rung, Family family) {
+    return static_cast<std::uint8_t>(first_rung_choice + rung * families + static_cast<int>(family));
+}
+
+/// Climb, and put into `result` whatever promises a smaller error than what is there.
+/// \param active  elements to begin with; others are left alone.
+/// \param length  as much as lengths are scaled by.
+void climb(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
+           AutomaticCurvature& result, const Execution& run);
+
+}  // namespace gaussmap
