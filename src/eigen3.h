@@ -98,8 +98,7 @@ inline bool smallest_eigenvector(const Symmetric3& m, Vec3& vector) {
     vector = {a.xz, a.yz, a.zz};
     if (a.xx > a.zz && a.xx >= a.yy) vector = {a.xx, a.xy, a.xz};
     if (a.yy > a.zz && a.yy > a.xx) vector = {a.xy, a.yy, a.yz};
-    vector = unit(vector);
-    lambda = dot(vector, m * vector);
+    lambda = dot(vector, m * vector) / squared(vector);
     vector = unit(adjugate(lambda) * vector);
     const Vec3 image = m * vector;
     lambda = dot(vector, image);

@@ -73,7 +73,7 @@ struct DistinctPoints {
     std::size_t non_finite = 0;        ///< inputs with a NaN or infinite coordinate
 };
 
-/// \throw std::invalid_argument on more than 2³¹ − 1 points. Time O(n) expected, +0 and −0 are equal.
+/// \throw std::invalid_argument on more than 2³¹ − 1 points. Time O(n) for points on surfaces; +0 and −0 are equal.
 DistinctPoints distinct_points(Points points);
 
 /// The Delaunay triangles incident on each point among its projected neighbours ("fan"), as closed or
