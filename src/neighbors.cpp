@@ -61,13 +61,16 @@ void check_k(int k) {
     if (k < 1) throw std::invalid_argument("k = " + std::to_string(k) + " is too small; ask for at least 1 neighbour");
 }
 
-/// The results but the query itself; it is not among them where enough copies of it come before.
+/// Rows are anywhere in memory; a word ahead has the first lines of one at hand when it is written.
+void prefetch(const std::int32_t* row, std::size_t count) {
+    for (std::size_t j = 0; j < std::min<std::size_t>(count, 32); j += 16) __builtin_prefetch(row + j, 1);
+}
+
+/// The results but the query itself, which comes first but for copies of it; enough of them leave it out.
 void copy_others(const std::int32_t* found, std::size_t others, std::int32_t self, std::int32_t* row) {
-    bool passed = false;
-    for (std::size_t j = 0; j < others; ++j) {
-        passed |= found[j] == self;
-        row[j] = found[j + passed];
-    }
+    std::size_t j = 0;
+    for (; j < others && found[j] != self; ++j) row[j] = found[j];
+    for (; j < others; ++j) row[j] = found[j + 1];
 }
 
 }  // namespace
@@ -89,6 +92,8 @@ Neighbors nearest_neighbors(Points points, int k, NearestKernel kernel, const Ex
                 QueryGroup group;
                 group.count = static_cast<int>(std::min<std::size_t>(leaf_points, points.count - l * leaf_points));
                 std::copy(leaf.p[0], leaf.p[0] + 3 * leaf_points, group.p[0]);
+                for (int q = 0; q < group.count; ++q)
+                    prefetch(neighbors.index.data() + static_cast<std::size_t>(leaf.index[q]) * neighbors.k, others);
                 kernel(room.view, group);
                 for (int q = 0; q < group.count; ++q)
                     copy_others(room.view.found + static_cast<std::size_t>(q) * room.view.k, others, leaf.index[q],
