@@ -6,10 +6,8 @@
 // (Batcher, "Sorting Networks and Their Applications", 1968).
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -19,6 +17,15 @@ namespace gaussmap {
 namespace {
 
 #define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+GAUSSMAP_INLINE double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+GAUSSMAP_INLINE double greater(double a, double b) {
+    return a > b ? a : b;
+}
 
 /// Four doubles, and what their halves can be made into.
 #ifdef __AVX2__
@@ -178,17 +185,18 @@ inline void merge_runs(const double* a, const double* a_end, const double* b, co
 /// that holds the result.
 inline double* sort_keys(double* key, double* spare, std::size_t count) {
     const std::size_t end = (count + sort_block - 1) / sort_block * sort_block;
-    for (std::size_t i = count; i < end; ++i) key[i] = std::numeric_limits<double>::infinity();
+    for (std::size_t i = count; i < end; ++i) key[i] = infinity;
     for (std::size_t i = 0; i < end; i += sort_block) sort_one_block(key + i);
     for (std::size_t run = sort_block; run < end; run *= 2) {
         for (std::size_t i = 0; i < end; i += 2 * run) {
-            const std::size_t middle = std::min(i + run, end), last = std::min(i + 2 * run, end);
-            if (middle < last)
-                merge_runs(key + i, key + middle, key + middle, key + last, spare + i);
+            const std::size_t last = i + 2 * run < end ? i + 2 * run : end;
+            if (i + run < last)
+                merge_runs(key + i, key + i + run, key + i + run, key + last, spare + i);
             else
-                std::copy(key + i, key + last, spare + i);
+                for (std::size_t j = i; j < last; ++j) spare[j] = key[j];
         }
-        std::swap(key, spare);
+        double* const sorted = spare;
+        spare = key, key = sorted;
     }
     return key;
 }

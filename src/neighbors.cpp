@@ -3,6 +3,7 @@
 #include "gaussmap/neighbors.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <string>
 
@@ -41,6 +42,7 @@ class Room {
         view.level_count = static_cast<int>(levels_.size());
         view.k = k;
         view.capacity = distance_.size() - leaf_points;
+        view.places = std::bit_ceil(view.capacity) - 1;
         view.most_leaves = nodes_.size() / 2;
         view.distance = distance_.data(), view.index = index_.data();
         view.key = key_.data(), view.spare = spare_.data();
@@ -74,6 +76,14 @@ void copy_others(const std::int32_t* found, std::size_t others, std::int32_t sel
 }
 
 }  // namespace
+
+void order_tied(const SearchRoom& room, double* first, double* last) {
+    std::sort(first, last, [&room](double a, double b) {
+        const std::size_t i = std::bit_cast<std::uint64_t>(a) & room.places,
+                          j = std::bit_cast<std::uint64_t>(b) & room.places;
+        return nearer({room.distance[i], room.index[i]}, {room.distance[j], room.index[j]});
+    });
+}
 
 Neighbors nearest_neighbors(Points points, int k, NearestKernel kernel, const Execution& run) {
     check_k(k);
