@@ -10,6 +10,7 @@ namespace gaussmap {
 struct QueryGroup {
     double p[3][leaf_points];
     int count;
+    std::int32_t home;  ///< the leaf that they are the points of, or −1
 };
 
 /// What a thread works with.

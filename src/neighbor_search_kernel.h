@@ -138,10 +138,24 @@ class Search {
   public:
     Search(const SearchRoom& room, const QueryGroup& group) : room_(room), group_(group) {}
 
-    /// With nothing known: down the tree, nearest boxes first.
+    /// With nothing known: nearest boxes first, down from the root, or up from the leaf that the query is a point of.
     void alone(int query) {
+        const int top = room_.level_count - 1;
         begin(query, {infinity, nobody});
-        visit(room_.level_count - 1, 0);
+        if (group_.home < 0) {
+            visit(top, 0, -1);
+        } else {
+            std::size_t node = static_cast<std::size_t>(group_.home);
+            scan(node);
+            for (int level = 0; level <= top && bound_.distance > 0; ++level, node /= children) {
+                visit(level, node / children, static_cast<int>(node % children));
+                if (candidates_.count >= room_.k) shrink();
+            }
+            if (!(bound_.distance > 0)) {  // k copies: now only the lowest indices are wanted
+                begin(query, {0, nobody});
+                visit(top, 0, -1);
+            }
+        }
         order();
     }
 
@@ -161,7 +175,7 @@ class Search {
         candidates_ = {room_.distance, room_.index, 0};
     }
     void scan(std::size_t leaf);
-    void visit(int level, std::size_t node);
+    void visit(int level, std::size_t node, int except);
     void order();
     void shrink();
 
@@ -187,7 +201,8 @@ GAUSSMAP_INLINE void Search::scan(std::size_t number) {
     candidates_.count = candidates.count;
 }
 
-void Search::visit(int level, std::size_t node) {
+/// Look at the children of a node but one.
+void Search::visit(int level, std::size_t node, int except) {
     const Boxes& boxes = room_.levels[level][node];
     const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
     const double* const low[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
@@ -201,7 +216,7 @@ void Search::visit(int level, std::size_t node) {
     int count = 0;
     for (int c = 0; c < children; ++c) {
         const Found bound = {lower[c], boxes.first[c]};
-        if (!nearer(bound, bound_)) continue;
+        if (c == except || !nearer(bound, bound_)) continue;
         int at = count++;
         for (; at > 0 && nearer(bound, sorted[at - 1].lower); --at) sorted[at] = sorted[at - 1];
         sorted[at] = {bound, c};
@@ -211,7 +226,7 @@ void Search::visit(int level, std::size_t node) {
         if (level == 0)
             scan(child);
         else
-            visit(level - 1, child);
+            visit(level - 1, child, -1);
     }
 }
 
@@ -324,13 +339,13 @@ void nearest(SearchRoom& room, const QueryGroup& group) {
     double typical = room.typical;
     const double limit = wide * typical;
     const double expected = narrow(room.k);
-    const std::size_t leaves = limit < infinity ? search.collect(box_of(group), limit) : 0;
+    const std::size_t leaves = limit > 0 && limit < infinity ? search.collect(box_of(group), limit) : 0;
     for (int q = 0; q < group.count; ++q) {
         const double bound = lesser(limit, expected * typical);
         if (leaves == 0 || !(search.within(q, bound, leaves) || (bound < limit && search.within(q, limit, leaves))))
             search.alone(q);
         const double farthest = search.farthest(q);
-        typical = typical < infinity ? 0.75 * typical + 0.25 * farthest : farthest;
+        typical = typical < infinity && farthest > 0 ? 0.75 * typical + 0.25 * farthest : farthest;
     }
     room.typical = typical;
 }

@@ -100,6 +100,7 @@ Neighbors nearest_neighbors(Points points, int k, NearestKernel kernel, const Ex
             for (; l < last; ++l) {
                 const Leaf& leaf = tree.leaves[l];
                 QueryGroup group;
+                group.home = static_cast<std::int32_t>(l);
                 group.count = static_cast<int>(std::min<std::size_t>(leaf_points, points.count - l * leaf_points));
                 std::copy(leaf.p[0], leaf.p[0] + 3 * leaf_points, group.p[0]);
                 for (int q = 0; q < group.count; ++q)
@@ -146,6 +147,7 @@ NearestPoints NeighborIndex::nearest(Points queries, int k, bool distances, cons
         Room room(*tree_, there);
         for (; first < last; first += leaf_points) {
             QueryGroup group{};
+            group.home = -1;
             group.count = static_cast<int>(std::min<std::size_t>(leaf_points, last - first));
             for (int q = 0; q < group.count; ++q)
                 for (int a = 0; a < 3; ++a)
