@@ -1,4 +1,4 @@
-// Sorting doubles in vector registers: blocks of 32 by a network, then merging, eight at a time. Part of the kernels
+// Sorting doubles in vector registers: blocks of 32 by a network, then merging, sixteen at a time. Part of the kernels
 // that include it, one for each instruction set; without external linkage for their reason. Keys that differ come out
 // in the one order there is, whatever the instruction set.
 //
@@ -6,10 +6,8 @@
 // (Batcher, "Sorting Networks and Their Applications", 1968).
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <limits>
-#include <utility>
 
 #ifdef __SSE2__
 #include <immintrin.h>
@@ -19,6 +17,15 @@ namespace gaussmap {
 namespace {
 
 #define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+GAUSSMAP_INLINE double lesser(double a, double b) {
+    return a < b ? a : b;
+}
+GAUSSMAP_INLINE double greater(double a, double b) {
+    return a > b ? a : b;
+}
 
 /// Four doubles, and what their halves can be made into.
 #ifdef __AVX2__
@@ -157,37 +164,39 @@ inline void sort_one_block(double* key) {
     for (int i = 0; i < 8; ++i) store_quad(key + 4 * i, q[i]);
 }
 
-/// Merge two sorted runs, multiples of 8 long and not empty.
+/// Merge two sorted runs, multiples of 16 long and not empty.
 inline void merge_runs(const double* a, const double* a_end, const double* b, const double* b_end, double* to) {
-    Quad q[4] = {load_quad(a), load_quad(a + 4), load_quad(b), load_quad(b + 4)};
-    a += 8, b += 8;
-    for (;; to += 8) {
-        merge<2>(q);
-        store_quad(to, q[0]), store_quad(to + 4, q[1]);
+    Quad q[8];
+    for (int i = 0; i < 4; ++i) q[i] = load_quad(a + 4 * i), q[4 + i] = load_quad(b + 4 * i);
+    a += 16, b += 16;
+    for (;; to += 16) {
+        merge<4>(q);
+        for (int i = 0; i < 4; ++i) store_quad(to + 4 * i, q[i]);
         if (a == a_end && b == b_end) break;
         const bool from_a = b == b_end || (a != a_end && *a < *b);
         const double* const next = from_a ? a : b;
-        q[0] = load_quad(next), q[1] = load_quad(next + 4);
-        (from_a ? a : b) += 8;
+        for (int i = 0; i < 4; ++i) q[i] = load_quad(next + 4 * i);
+        (from_a ? a : b) += 16;
     }
-    store_quad(to + 8, q[2]), store_quad(to + 12, q[3]);
+    for (int i = 4; i < 8; ++i) store_quad(to + 4 * i, q[i]);
 }
 
 /// Sort `count` keys, none of them NaN; both arrays have room up to the next multiple of 32. Returns the one of the two
 /// that holds the result.
 inline double* sort_keys(double* key, double* spare, std::size_t count) {
     const std::size_t end = (count + sort_block - 1) / sort_block * sort_block;
-    for (std::size_t i = count; i < end; ++i) key[i] = std::numeric_limits<double>::infinity();
+    for (std::size_t i = count; i < end; ++i) key[i] = infinity;
     for (std::size_t i = 0; i < end; i += sort_block) sort_one_block(key + i);
     for (std::size_t run = sort_block; run < end; run *= 2) {
         for (std::size_t i = 0; i < end; i += 2 * run) {
-            const std::size_t middle = std::min(i + run, end), last = std::min(i + 2 * run, end);
-            if (middle < last)
-                merge_runs(key + i, key + middle, key + middle, key + last, spare + i);
+            const std::size_t last = i + 2 * run < end ? i + 2 * run : end;
+            if (i + run < last)
+                merge_runs(key + i, key + i + run, key + i + run, key + last, spare + i);
             else
-                std::copy(key + i, key + last, spare + i);
+                for (std::size_t j = i; j < last; ++j) spare[j] = key[j];
         }
-        std::swap(key, spare);
+        double* const sorted = spare;
+        spare = key, key = sorted;
     }
     return key;
 }

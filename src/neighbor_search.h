@@ -10,6 +10,7 @@ namespace gaussmap {
 struct QueryGroup {
     double p[3][leaf_points];
     int count;
+    std::int32_t home;  ///< the leaf that they are the points of, or −1
 };
 
 /// What a thread works with.
@@ -19,6 +20,7 @@ struct SearchRoom {
     int level_count = 0;
     std::size_t k = 0;              ///< results a query: 1 up to the number of points
     std::size_t capacity = 0;       ///< of candidates, at least k and a leaf; the arrays have room for a leaf more
+    std::uint64_t places = 0;       ///< ones where a key has the candidate's place
     std::size_t most_leaves = 0;    ///< that a group collects; beyond, its queries go one by one
     double* distance = nullptr;     ///< candidates: squared distance
     std::int32_t* index = nullptr;  ///<   and index
@@ -30,6 +32,18 @@ struct SearchRoom {
     /// Squared distance of the k-th nearest, as queries go; infinite at first. It has no part in the results.
     double typical = std::numeric_limits<double>::infinity();
 };
+
+/// A candidate, or a bound of candidates: by squared distance, then by index.
+struct Found {
+    double distance;
+    std::int32_t index;
+};
+static inline bool nearer(const Found& a, const Found& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
+}
+
+/// Sort keys that differ in their places alone by what the candidates there are. Rare, so kept out of the kernels.
+void order_tied(const SearchRoom& room, double* first, double* last);
 
 /// Fill `found` and `found_distance` for the queries of a group: the k nearest, equal distances by smaller index.
 using NearestKernel = void (*)(SearchRoom& room, const QueryGroup& group);

@@ -13,9 +13,6 @@
 #include <immintrin.h>
 #endif
 
-#include <algorithm>
-#include <bit>
-
 #include "key_sort_kernel.h"
 #include "neighbor_search.h"
 
@@ -33,7 +30,7 @@ typedef double Real __attribute__((vector_size(8 * lanes)));
 typedef double RealInMemory __attribute__((vector_size(8 * lanes), aligned(8), may_alias));
 typedef long long Mask __attribute__((vector_size(8 * lanes)));
 
-constexpr double infinity = std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::max();
+constexpr double most = std::numeric_limits<double>::max();
 
 GAUSSMAP_INLINE Real load(const double* p) {
     return *reinterpret_cast<const RealInMemory*>(p);
@@ -104,7 +101,7 @@ GAUSSMAP_INLINE void append(Candidates& to, Mask mask, Real distance, const std:
     const __m128i from = _mm_loadu_si128(reinterpret_cast<const __m128i*>(index));
     store(to.distance + to.count, (Real)_mm256_permutevar8x32_epi32((__m256i)distance, halves));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to.index + to.count), _mm_shuffle_epi8(from, bytes));
-    to.count += static_cast<std::size_t>(std::popcount(set));
+    to.count += static_cast<std::size_t>(__builtin_popcount(set));
 #else
     for (int l = 0; l < lanes; ++l) {
         to.distance[to.count] = distance[l];
@@ -136,23 +133,29 @@ inline double narrow(std::size_t k) {
     return 1 + 1.4 / __builtin_sqrt(static_cast<double>(k));
 }
 
-struct Found {
-    double distance = infinity;  ///< squared
-    std::int32_t index = nobody;
-};
-inline bool nearer(const Found& a, const Found& b) {
-    return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
-}
-
 /// One query at a time.
 class Search {
   public:
     Search(const SearchRoom& room, const QueryGroup& group) : room_(room), group_(group) {}
 
-    /// With nothing known: down the tree, nearest boxes first.
+    /// With nothing known: nearest boxes first, down from the root, or up from the leaf that the query is a point of.
     void alone(int query) {
-        begin(query, {});
-        visit(room_.level_count - 1, 0);
+        const int top = room_.level_count - 1;
+        begin(query, {infinity, nobody});
+        if (group_.home < 0) {
+            visit(top, 0, -1);
+        } else {
+            std::size_t node = static_cast<std::size_t>(group_.home);
+            scan(node);
+            for (int level = 0; level <= top && bound_.distance > 0; ++level, node /= children) {
+                visit(level, node / children, static_cast<int>(node % children));
+                if (candidates_.count >= room_.k) shrink();
+            }
+            if (!(bound_.distance > 0)) {  // k copies: now only the lowest indices are wanted
+                begin(query, {0, nobody});
+                visit(top, 0, -1);
+            }
+        }
         order();
     }
 
@@ -172,14 +175,15 @@ class Search {
         candidates_ = {room_.distance, room_.index, 0};
     }
     void scan(std::size_t leaf);
-    void visit(int level, std::size_t node);
+    void visit(int level, std::size_t node, int except);
     void order();
     void shrink();
 
     const SearchRoom room_;
     const QueryGroup& group_;
+    const std::uint32_t* leaves_ = nullptr;
     Candidates candidates_{};
-    Found bound_;
+    Found bound_{infinity, nobody};
     double q_[3] = {};
     int query_ = 0;
 };
@@ -197,7 +201,8 @@ GAUSSMAP_INLINE void Search::scan(std::size_t number) {
     candidates_.count = candidates.count;
 }
 
-void Search::visit(int level, std::size_t node) {
+/// Look at the children of a node but one.
+void Search::visit(int level, std::size_t node, int except) {
     const Boxes& boxes = room_.levels[level][node];
     const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
     const double* const low[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
@@ -211,7 +216,7 @@ void Search::visit(int level, std::size_t node) {
     int count = 0;
     for (int c = 0; c < children; ++c) {
         const Found bound = {lower[c], boxes.first[c]};
-        if (!nearer(bound, bound_)) continue;
+        if (c == except || !nearer(bound, bound_)) continue;
         int at = count++;
         for (; at > 0 && nearer(bound, sorted[at - 1].lower); --at) sorted[at] = sorted[at - 1];
         sorted[at] = {bound, c};
@@ -221,7 +226,7 @@ void Search::visit(int level, std::size_t node) {
         if (level == 0)
             scan(child);
         else
-            visit(level - 1, child);
+            visit(level - 1, child, -1);
     }
 }
 
@@ -243,7 +248,7 @@ std::size_t Search::collect(const Box& box, double bound) {
                 near |= bits_of(gap(box, low, high, static_cast<std::size_t>(c)) <= limit) << c;
             if (next + children > most_leaves) return 0;
             for (; near; near &= near - 1) {
-                const int c = std::countr_zero(near);
+                const int c = __builtin_ctz(near);
                 if (level == 0)
                     for (int a = 0; a < 3; ++a) {
                         copy[static_cast<std::size_t>(2 * a) * most_leaves + next] = boxes.low[a][c];
@@ -253,9 +258,10 @@ std::size_t Search::collect(const Box& box, double bound) {
             }
         }
         count = next;
-        std::swap(from, to);
+        std::uint32_t* const done = from;
+        from = to, to = done;
     }
-    if (from != room_.nodes[0]) std::copy(from, from + count, room_.nodes[0]);
+    leaves_ = from;
     return count;
 }
 
@@ -270,8 +276,8 @@ bool Search::within(int query, double bound, std::size_t leaves) {
     for (std::size_t i = 0; i < leaves; i += lanes) {
         unsigned near = bits_of(gap(point, low, high, i) <= all(bound_.distance));
         for (; near; near &= near - 1) {
-            const std::size_t at = i + static_cast<std::size_t>(std::countr_zero(near));
-            if (at < leaves) scan(room_.nodes[0][at]);
+            const std::size_t at = i + static_cast<std::size_t>(__builtin_ctz(near));
+            if (at < leaves) scan(leaves_[at]);
         }
     }
     if (candidates_.count < room_.k) return false;
@@ -283,28 +289,26 @@ bool Search::within(int query, double bound, std::size_t leaves) {
 /// room for the candidate's place, so that only keys that agree in all others need a second look.
 void Search::order() {
     const std::size_t count = candidates_.count, k = room_.k;
-    const std::uint64_t places = std::bit_ceil(room_.capacity) - 1;
+    const std::uint64_t places = room_.places;
     const double* const distance = room_.distance;
     const std::int32_t* const index = room_.index;
     for (std::size_t i = 0; i < count; ++i)
-        room_.key[i] = std::bit_cast<double>((std::bit_cast<std::uint64_t>(std::min(distance[i], most)) & ~places) | i);
+        room_.key[i] =
+            __builtin_bit_cast(double, (__builtin_bit_cast(std::uint64_t, lesser(distance[i], most)) & ~places) | i);
     double* const key = sort_keys(room_.key, room_.spare, count);
-    const auto bits = [key](std::size_t i) { return std::bit_cast<std::uint64_t>(key[i]); };
-    const auto place = [places](double a) { return std::bit_cast<std::uint64_t>(a) & places; };
+    const auto bits = [key](std::size_t i) { return __builtin_bit_cast(std::uint64_t, key[i]); };
     bool tied = false;
-    for (std::size_t i = 0; i < std::min(k, count - 1); ++i) tied |= (bits(i) ^ bits(i + 1)) <= places;
+    for (std::size_t i = 0; i < k && i + 1 < count; ++i) tied |= (bits(i) ^ bits(i + 1)) <= places;
     if (tied)
         for (std::size_t i = 0, end; i < k; i = end) {
             for (end = i + 1; end < count && (bits(i) ^ bits(end)) <= places;) ++end;
-            std::sort(key + i, key + end, [=](double a, double b) {
-                return nearer({distance[place(a)], index[place(a)]}, {distance[place(b)], index[place(b)]});
-            });
+            if (end > i + 1) order_tied(room_, key + i, key + end);
         }
     double* const found_distance = room_.found_distance + query_ * k;
     std::int32_t* const found = room_.found + query_ * k;
     for (std::size_t i = 0; i < k; ++i) {
-        found_distance[i] = distance[place(key[i])];
-        found[i] = index[place(key[i])];
+        found_distance[i] = distance[bits(i) & places];
+        found[i] = index[bits(i) & places];
     }
 }
 
@@ -313,8 +317,7 @@ void Search::shrink() {
     order();
     const double* const found_distance = room_.found_distance + query_ * room_.k;
     const std::int32_t* const found = room_.found + query_ * room_.k;
-    std::copy(found_distance, found_distance + room_.k, room_.distance);
-    std::copy(found, found + room_.k, room_.index);
+    for (std::size_t i = 0; i < room_.k; ++i) room_.distance[i] = found_distance[i], room_.index[i] = found[i];
     candidates_.count = room_.k;
     bound_ = {found_distance[room_.k - 1], found[room_.k - 1]};
 }
@@ -324,8 +327,8 @@ Box box_of(const QueryGroup& group) {
     for (int a = 0; a < 3; ++a) {
         box.low[a] = box.high[a] = group.p[a][0];
         for (int q = 1; q < group.count; ++q) {
-            box.low[a] = std::min(box.low[a], group.p[a][q]);
-            box.high[a] = std::max(box.high[a], group.p[a][q]);
+            box.low[a] = lesser(box.low[a], group.p[a][q]);
+            box.high[a] = greater(box.high[a], group.p[a][q]);
         }
     }
     return box;
@@ -336,13 +339,13 @@ void nearest(SearchRoom& room, const QueryGroup& group) {
     double typical = room.typical;
     const double limit = wide * typical;
     const double expected = narrow(room.k);
-    const std::size_t leaves = limit < infinity ? search.collect(box_of(group), limit) : 0;
+    const std::size_t leaves = limit > 0 && limit < infinity ? search.collect(box_of(group), limit) : 0;
     for (int q = 0; q < group.count; ++q) {
-        const double bound = std::min(limit, expected * typical);
+        const double bound = lesser(limit, expected * typical);
         if (leaves == 0 || !(search.within(q, bound, leaves) || (bound < limit && search.within(q, limit, leaves))))
             search.alone(q);
         const double farthest = search.farthest(q);
-        typical = typical < infinity ? 0.75 * typical + 0.25 * farthest : farthest;
+        typical = typical < infinity && farthest > 0 ? 0.75 * typical + 0.25 * farthest : farthest;
     }
     room.typical = typical;
 }

@@ -73,6 +73,7 @@ NearestPoints NeighborIndex::nearest(Points queries, int k, bool distances, cons
         Room room(*tree_, there);
         for (; first < last; first += leaf_points) {
             QueryGroup group{};
+            group.home = -1;
             group.count = static_cast<int>(std::min<std::size_t>(leaf_points, last - first));
             for (int q = 0; q < group.count; ++q)
                 for (int a = 0; a < 3; ++a)

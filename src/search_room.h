@@ -1,6 +1,7 @@
 // The arrays that a search works in.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -27,6 +28,7 @@ class Room {
         view.level_count = static_cast<int>(levels_.size());
         view.k = k;
         view.capacity = distance_.size() - leaf_points;
+        view.places = std::bit_ceil(view.capacity) - 1;
         view.most_leaves = nodes_.size() / 2;
         view.distance = distance_.data(), view.index = index_.data();
         view.key = key_.data(), view.spare = spare_.data();

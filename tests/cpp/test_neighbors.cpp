@@ -135,6 +135,20 @@ TEST(NearestNeighbors, FollowAPermutationOfThePoints) {
             ASSERT_EQ(after[static_cast<std::size_t>(to[i])][j], to[static_cast<std::size_t>(before[i][j])]);
 }
 
+/// From the centre everything on the sphere is as near; only what is in the centre itself may be looked at.
+TEST(NearestNeighbors, ManyCopiesInTheCentreOfASphereAreNotSlow) {
+    const std::vector<double> sphere = support::sphere_cloud(1, 30000, 23).points;
+    std::vector<double> points;
+    for (std::size_t i = 0; i < 30000; ++i) {
+        points.insert(points.end(), &sphere[3 * i], &sphere[3 * i] + 3);
+        points.insert(points.end(), {0, 0, 0});
+    }
+    const Neighbors found = nearest_neighbors(points, 20);
+    for (std::size_t i = 0; i < 30000; ++i)
+        for (std::size_t j = 0; j < 20; ++j)
+            ASSERT_EQ(found[2 * i + 1][j], static_cast<std::int32_t>(2 * (i <= j ? j + 1 : j) + 1)) << "copy " << i;
+}
+
 TEST(NearestNeighbors, SameForAnyNumberOfThreads) {
     const std::vector<double> points = support::torus_cloud(1, 0.4, 0.03, 13).points;
     const Neighbors one = nearest_neighbors(points, 20, {1, {}});
