@@ -131,15 +131,14 @@ class Bench:
         return self.rows(source, command, file, [judged, *settings]) if settings else []
 
     def cloud_peers(self, file, sampling):
-        kind = "clean" if sampling in CLEAN else "noisy"
-        part = str(QUICK_JUDGED if self.quick else 0)
-        clouds = SOURCE / "cloud_curvature"
-        rows = self.jets(file, JETS[sampling if kind == "noisy" else "clean"])
-        rows += self.rows(clouds / "pcl_curvatures.cpp", [self.folder / "pcl_curvatures"], file, ["0", *PCL[kind].split()])
-        apss = clouds / "meshlab_apss.py"
-        part = str(QUICK_JUDGED // 2 if self.quick else QUICK_JUDGED)  # minutes a file otherwise
-        rows += self.rows(apss, [self.python, apss], file, [part, *APSS[sampling if kind == "noisy" else "clean"].split()])
-        return rows
+        clean = sampling in CLEAN
+        grid = "clean" if clean else sampling
+        pcl = SOURCE / "cloud_curvature/pcl_curvatures.cpp"
+        apss = SOURCE / "cloud_curvature/meshlab_apss.py"
+        part = str(QUICK_JUDGED // 2 if self.quick else QUICK_JUDGED)  # all of them take APSS many minutes a file
+        rows = self.jets(file, JETS[grid])
+        rows += self.rows(pcl, [self.folder / "pcl_curvatures"], file, ["0", *PCL["clean" if clean else "noisy"].split()])
+        return rows + self.rows(apss, [self.python, apss], file, [part, *APSS[grid].split()])
 
     def mesh_peers(self, file, kind):
         peers = SOURCE / "mesh_curvature/peers.py"
@@ -211,16 +210,18 @@ class Cell:
 
 
 def table(title, cells):
-    lines = [f"## {title}", "", "| cell | ours | best peer | ours / best | which, with what the truth chose | other rows of ours |",
+    lines = [f"## {title}", "",
+             "| cell | ours | best peer | ours / best | which, with what the truth chose | other rows of ours |",
              "|---|---|---|---|---|---|"]
     for cell in cells:
         others = ", ".join(f"{name.removeprefix('ours, ')} {error:.3g}" for name, error in list(cell.ours.items())[1:])
         best = " ".join(cell.best) if cell.best else "none"
-        lines.append(f"| {cell.name} | {cell.judged():.3g} | {cell.best_error():.3g} | {cell.ratio():.2f} | {best} | {others} |")
+        figures = f"{cell.judged():.3g} | {cell.best_error():.3g} | {cell.ratio():.2f}"
+        lines.append(f"| {cell.name} | {figures} | {best} | {others} |")
     ratios = [cell.ratio() for cell in cells]
-    lines += ["", f"Geometric mean of ours / best: **{geometric_mean(ratios):.3f}**, largest {max(ratios, default=math.nan):.2f}, "
-              f"{len(cells)} cells.", ""]
-    return lines
+    largest = max(ratios, default=math.nan)
+    mean = f"Geometric mean of ours / best: **{geometric_mean(ratios):.3f}**"
+    return [*lines, "", f"{mean}, largest {largest:.2f}, {len(cells)} cells.", ""]
 
 
 def against(title, cells, peer):
@@ -232,7 +233,8 @@ def against(title, cells, peer):
             ratios.append(cell.judged() / min(errors))
     if not ratios:
         return []
-    return [f"{title} against {peer} at its best: geometric mean {geometric_mean(ratios):.3f}, largest {max(ratios):.2f}.", ""]
+    mean, largest = geometric_mean(ratios), max(ratios)
+    return [f"{title} against {peer} at its best: geometric mean {mean:.3f}, largest {largest:.2f}.", ""]
 
 
 def times(cells):
@@ -270,7 +272,7 @@ def measure(bench, seeds, names, kind, samplings):
 def write_rows(path, cells):
     with path.open("w", newline="") as file:
         out = csv.writer(file)
-        out.writerow(["cell", "seed", "peer", "parameter", "relative_rmse", "rescaled", "undefined", "points", "seconds"])
+        out.writerow("cell seed peer parameter relative_rmse rescaled undefined points seconds".split())
         for cell in cells:
             for rows_of_seeds in (cell.ours_rows, cell.peer_rows):
                 for seed, rows in enumerate(rows_of_seeds, 1):
@@ -291,7 +293,8 @@ def main():
     seeds = [1] if options.quick else [1, 2, 3]
     for seed in seeds:
         bench.make_shapes(seed, names)
-    lines, everything = ["# Accuracy", "", "Relative RMSE of the density; peers at the parameters that the truth chose.", ""], []
+    lines = ["# Accuracy", "", "Relative RMSE of the density; peers at the parameters that the truth chose.", ""]
+    everything = []
     if "clouds" in options.kinds:
         clean = measure(bench, seeds, names, "clouds", CLEAN)
         noisy = measure(bench, seeds, names, "clouds", NOISY)
@@ -301,7 +304,8 @@ def main():
     if "meshes" in options.kinds:
         grids = measure(bench, seeds, names, "meshes", MESHES[:2])
         irregular = measure(bench, seeds, names, "meshes", MESHES[2:])
-        lines += table("Meshes: regular and anisotropic grids", grids) + table("Meshes: irregular, clean and noisy", irregular)
+        lines += table("Meshes: regular and anisotropic grids", grids)
+        lines += table("Meshes: irregular, clean and noisy", irregular)
         lines += against("Irregular meshes", irregular, "libigl")
         lines += ["## Time, meshes", ""] + times(grids + irregular)
         everything += grids + irregular
