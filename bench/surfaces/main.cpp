@@ -45,7 +45,7 @@ const std::vector<Subject>& subjects() {
     using R = Resolution;
     using O = SurfaceOptions;
     using namespace gaussmap;
-    // Tube radii leave strands at least 1.2 diameters apart, centre to centre.
+    // Tube radii leave strands at least 1.9 diameters apart, centre to centre.
     static const std::vector<Subject> table = {
         {"torus5", {168, 84}, {1400, 560}, [](R r, const O& o) { return torus(1, 0.5, r.around, r.across, o); }},
         {"torus7", {140, 100}, {1200, 700}, [](R r, const O& o) { return torus(1, 0.7, r.around, r.across, o); }},
