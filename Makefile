@@ -4,6 +4,7 @@
 #   make test            everything that is tested: C++, command line, install, layout; Release and sanitizers
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
+#   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -16,10 +17,11 @@ PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
 # Debian packages that are listed but not installed; sudo where we are not root.
-missing = $$(grep -v '^\#' packages.txt | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
+packages = packages.txt
+missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -74,6 +76,12 @@ bench: setup
 	build/bench/bench/cloud_speed
 	build/bench/bench/cloud_speed memory
 	build/bench/bench/knn
+
+bench-accuracy: packages = packages.txt bench/packages.txt
+bench-accuracy: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_accuracy
+	/usr/bin/python3 bench/accuracy.py build/bench $(if $(QUICK),--quick)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null
