@@ -44,4 +44,12 @@ inline void diffuse(std::vector<float>& field, const ElementGraph& graph, int ti
     }
 }
 
+/// For each element the squared difference between its value and the mean of its neighbours'.
+inline std::vector<float> roughness(const std::vector<float>& field, const ElementGraph& graph, const Execution& run) {
+    std::vector<float> mean = field;
+    diffuse(mean, graph, 1, run);
+    for (std::size_t i = 0; i < field.size(); ++i) mean[i] = (field[i] - mean[i]) * (field[i] - mean[i]);
+    return mean;
+}
+
 }  // namespace gaussmap

@@ -63,10 +63,9 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     look.lowered = true;
     if (count < 5 || !level(quadric, neighbors, few, view, jet)) return look;
     look.normal = jet.normal;
-    look.chord = look.monge = jet.tensor;
-    look.chord_density = look.monge_density = squared_norm(jet.tensor);
-    // Nothing tells the remainder of a quadric from so few: take it for as large as the value.
-    look.chord_change = look.monge_change = look.chord_density;
+    const Vec3 quadric_normal = jet.normal;
+    // Nothing tells the remainder of a quadric alone: take it for as large as the value.
+    look.quadric = {jet.tensor, squared_norm(jet.tensor), squared_norm(jet.tensor)};
 
     const int look_count = std::min(count, look_neighbors);
     Moments<4> quartic;
@@ -91,12 +90,14 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
 
     look.lowered = false;
     look.normal = jet.normal;
-    look.chord = jet.tensor;
-    look.chord_density = squared_norm(jet.tensor);
-    look.monge = carried(monge.tensor, monge.normal, jet.normal);
-    look.monge_density = squared_norm(monge.tensor);
-    look.chord_change = look.chord_density - density_of(equal, frame, view);
-    look.monge_change = look.monge_density - density_of(equal_monge, frame, view);
+    const double chord = squared_norm(jet.tensor), flat = squared_norm(monge.tensor);
+    look.chord = {jet.tensor, chord, chord - density_of(equal, frame, view)};
+    look.monge = {carried(monge.tensor, monge.normal, jet.normal), flat, flat - density_of(equal_monge, frame, view)};
+    // Unoriented normals of one surface differ by less than a right angle, or there is no telling.
+    const Vec3 other = dot(quadric_normal, jet.normal) < 0 ? -quadric_normal : quadric_normal;
+    if (dot(quadric_normal, jet.normal) < 0) look.quadric.tensor = negated(look.quadric.tensor);
+    look.quadric.tensor = carried(look.quadric.tensor, other, jet.normal);
+    look.quadric.change = look.quadric.density - chord;
     look.variance = density_variance(equal) / std::pow(view.size, 6);
     look.trace = shape_variance(equal) / std::pow(view.size, 4);
     look.residual = residual;

@@ -18,11 +18,15 @@ struct FirstLook {
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
     Vec3 normal = {nan, nan, nan};
-    /// Through the element, weighted by the inverse of the expected remainder: in chords, and in Monge coordinates.
-    Symmetric3 chord, monge;
-    double chord_density = nan, monge_density = nan;
-    /// What equal weights change in either density: a measure of the remainder.
-    double chord_change = nan, monge_change = nan;
+    /// Fits through the element, and for each a measure of its error.
+    struct Fit {
+        Symmetric3 tensor;
+        double density = nan;
+        double change = nan;  ///< of the density, by another fit that is somewhat worse
+    };
+    /// Quartics, weighted by the inverse of the expected remainder, in chords and in Monge coordinates; equal weights
+    /// change them. A quadric in chords over few neighbours; the quartic changes it.
+    Fit chord, monge, quadric;
     /// Of the density and of the shape operator with equal weights, for heights of unit variance.
     double variance = nan, trace = nan;
     /// Residual variance of quartics over `look_neighbors` and `wide_neighbors`.

@@ -72,7 +72,9 @@ class Ladder {
             const double error = result.error[i];
             best_[i] = std::isfinite(error) ? static_cast<float>(error * error) : never;
         }
-        for (int f = 0; f < families; ++f) dead_[f].assign(elements.count, 0), least_[f].assign(elements.count, never);
+        for (int f = 0; f < families; ++f)
+            dead_[f].assign(elements.count, 0), least_[f].assign(elements.count, never),
+                bias_[f].assign(elements.count, 0);
     }
 
     void climb(const Execution& run) {
@@ -127,6 +129,7 @@ class Ladder {
     Field noise_;  ///< variance of the heights
     std::vector<std::uint8_t> settled_, dead_[families];
     Field best_, least_[families];  ///< squared errors: of what `result` holds, and of each family's best
+    Field bias_[families];          ///< squared, as far as it is sure on the rungs below
     Rung lower_, upper_;
 };
 
@@ -226,6 +229,9 @@ void Ladder::estimate_noise(const Field& residual, const Field& wider) {
     }
 }
 
+/// A change is more than noise where it is this many times what noise is expected to do.
+constexpr double sure = 2.5;
+
 /// Take a family's value where it promises a smaller error than what there is.
 void Ladder::weigh_family(int rung, int family, const Field& residual) {
     const Traits& known = traits[static_cast<std::size_t>(family)];
@@ -250,12 +256,15 @@ void Ladder::weigh_family(int rung, int family, const Field& residual) {
             residual[i] > 2.0f * noise_[i] && lower_.size[i] * lower_.size[i] > 20 * noise_[i] && rung > 0;
         dead_[family][i] |= misfit ? 1 : 0;
         if (dead_[family][i]) continue;
-        const double bias = std::max(0.0, change[i] - known.change * variance[i]) / (known.bias * known.bias);
-        const auto risk = static_cast<float>(variance[i] + bias);
+        // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
+        const double noise = known.change * variance[i], per_change = 1 / (known.bias * known.bias);
+        const double bias = std::max<double>(per_change * (change[i] - noise), bias_[family][i]);
+        const auto risk = static_cast<float>(variance[i] + std::max(0.0, bias));
         if (!(risk < never)) continue;
+        bias_[family][i] = std::max(bias_[family][i], static_cast<float>(per_change * (change[i] - sure * noise)));
         least_[family][i] = std::min(least_[family][i], risk);
         // Far above its own best it will not come back.
-        if (risk > 30 * least_[family][i]) dead_[family][i] = 1;
+        if (risk > 10 * least_[family][i]) dead_[family][i] = 1;
         if (!(risk < best_[i])) continue;
         best_[i] = risk;
         result_.density[i] = std::max(0.0, unbiased(lower_, i));

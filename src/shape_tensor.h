@@ -21,6 +21,10 @@ inline void add(Symmetric3& sum, double factor, const Symmetric3& a) {
     sum.yy += factor * a.yy, sum.yz += factor * a.yz, sum.zz += factor * a.zz;
 }
 
+inline Symmetric3 negated(const Symmetric3& a) {
+    return {-a.xx, -a.xy, -a.xz, -a.yy, -a.yz, -a.zz};
+}
+
 inline Vec3 product(const Symmetric3& a, Vec3 v) {
     return {a.xx * v.x + a.xy * v.y + a.xz * v.z, a.xy * v.x + a.yy * v.y + a.yz * v.z,
             a.xz * v.x + a.yz * v.y + a.zz * v.z};
