@@ -39,11 +39,9 @@ double density_of(const HeightField<4>& field, const Frame& frame, const View& v
     return squared_norm(surface_jet(field.c, frame, view.size).tensor);
 }
 
-/// Residual variance of a quartic over `count` neighbours and the element, in chords, free to pass by the element.
-bool free_quartic(Moments<4>& moments, const std::vector<Vec3>& neighbors, int count, const View& view,
-                  HeightField<4>& field, double& residual) {
-    collect(moments, neighbors.data(), count, true, view, Chart::chord);
-    if (!moments.solve(true, field) || field.free < 1) return false;
+/// Residual variance of a quartic free to pass by the element.
+bool free_quartic(Moments<4>& moments, const View& view, HeightField<4>& field, double& residual) {
+    if (!moments.solve(true, field, true) || field.free < 1) return false;
     residual = field.residual / field.free * view.size * view.size;
     return true;
 }
@@ -84,9 +82,12 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     collect(quartic, neighbors.data(), look_count, true, view, Chart::monge);
     if (!quartic.solve(true, equal_monge)) return look;
     double residual, wide;
-    if (!free_quartic(quartic, neighbors, look_count, view, equal, residual)) return look;
+    collect(quartic, neighbors.data(), look_count, true, view, Chart::chord);
+    if (!free_quartic(quartic, view, equal, residual)) return look;
     HeightField<4> wider;
-    if (!free_quartic(quartic, neighbors, std::min(count, wide_neighbors), view, wider, wide)) return look;
+    collect_more(quartic, neighbors.data() + look_count, std::min(count, wide_neighbors) - look_count, view,
+                 Chart::chord);
+    if (!free_quartic(quartic, view, wider, wide)) return look;
 
     look.lowered = false;
     look.normal = jet.normal;

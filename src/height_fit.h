@@ -19,10 +19,10 @@ constexpr int monomials(int degree) {
 template <int Degree>
 struct HeightField {
     std::array<double, monomials(Degree)> c;
-    /// Covariance of the second derivatives h_uu, h_uv, h_vv at the origin for data of unit variance.
-    double covariance[3][3];
     double residual;  ///< weighted sum of the squared residuals
     int free;         ///< data less unknowns
+    /// Covariance of the second derivatives h_uu, h_uv, h_vv at the origin for data of unit variance; where asked for.
+    double covariance[3][3];
 };
 
 /// Variance of h_uu² + 2 h_uv² + h_vv² for data of unit variance, to first order.
@@ -75,7 +75,7 @@ class Moments {
     /// The height field of a degree ≤ Degree; with `constant` false it passes through the origin.
     /// False where the data do not determine it.
     template <int Lower>
-    bool solve(bool constant, HeightField<Lower>& field) {
+    bool solve(bool constant, HeightField<Lower>& field, bool covariance = false) {
         static_assert(Lower <= Degree);
         flush();
         constexpr int all = monomials(Lower);
@@ -114,7 +114,7 @@ class Moments {
         field.c[0] = 0;
         for (int i = 0; i < n; ++i) field.c[i + skip] = x[i] * scale[i];
         field.residual = std::max(0.0, sum_[terms][terms] - explained);
-        if constexpr (Lower >= 2) second_derivatives(lower, scale, skip, n, field);
+        if (covariance) second_derivatives(lower, scale, skip, n, field);
         return true;
     }
 

@@ -13,7 +13,7 @@ namespace gaussmap {
 /// How a neighbour's place in the tangent plane is told.
 enum class Chart {
     monge,  ///< by its projection ρ
-    chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (12))
+    chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (11))
 };
 
 /// What a neighbour weighs, by its squared distance in units of the patch's size.
@@ -37,13 +37,14 @@ struct View {
     double size;  ///< unit of lengths
 };
 
-/// Take in `count` neighbours, given as differences from the element; with `self`, the element too.
+/// Take in `count` more neighbours, given as differences from the element.
 template <int Degree, class Weights = EqualWeights>
-Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool self, const View& view, Chart chart,
-              Weights weights = {}) {
+Frame collect_more(Moments<Degree>& moments, const Vec3* neighbors, int count, const View& view, Chart chart,
+                   Weights weights = {}) {
     const Frame frame = frame_about(view.normal);
     const double unit = 1 / view.size;
-    const auto add = [&](Vec3 d) {
+    for (int j = 0; j < count; ++j) {
+        const Vec3 d = neighbors[j] - view.foot;
         double u = unit * dot(d, frame.u), v = unit * dot(d, frame.v);
         const double height = unit * dot(d, frame.n), flat = u * u + v * v, squared = flat + height * height;
         if (chart == Chart::chord) {
@@ -52,11 +53,18 @@ Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool s
             u *= stretch, v *= stretch;
         }
         moments.add(u, v, height, weights(squared));
-    };
-    moments.clear();
-    if (self) add(-view.foot);
-    for (int j = 0; j < count; ++j) add(neighbors[j] - view.foot);
+    }
     return frame;
+}
+
+/// The same from the start; with `self`, the element first.
+template <int Degree, class Weights = EqualWeights>
+Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool self, const View& view, Chart chart,
+              Weights weights = {}) {
+    constexpr Vec3 element = {};
+    moments.clear();
+    if (self) collect_more(moments, &element, 1, view, chart, weights);
+    return collect_more(moments, neighbors, count, view, chart, weights);
 }
 
 /// The view from the fitted surface itself: its foot under the element, its normal.

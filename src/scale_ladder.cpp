@@ -167,7 +167,7 @@ void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neigh
     }
     const Frame frame = collect(quartic, neighbors.data(), count, true, view, Chart::chord);
     HeightField<4> full;
-    if (!quartic.solve(true, curved)) return;
+    if (!quartic.solve(true, curved, true)) return;
     upper_.size[i] = static_cast<float>(view.size);
     const double size4 = std::pow(view.size, 4), size6 = std::pow(view.size, 6);
     const auto keep = [&](int q, Family family, const auto& field) {
@@ -180,7 +180,7 @@ void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neigh
         upper_.residual[q][i] = static_cast<float>(field.residual / std::max(1, field.free) * view.size * view.size);
     };
     keep(0, Family::quadric, curved);
-    if (quartic.solve(true, full)) keep(1, Family::quartic, full);
+    if (quartic.solve(true, full, true)) keep(1, Family::quartic, full);
 }
 
 /// Shape operators of the quadrics, averaged over up to `most_samples` of the nearest k, with the weights 1 − (d/h)².
