@@ -311,7 +311,7 @@ def test_human_report(gaussmap):
 )
 def test_fits_of_a_cloud(gaussmap, tmp_path, options, normals, rmse):
     gaussmap("shape", "torus", "--grid", "90x90", "--jitter", 0.2, "--seed", 1, "-o", "t.ply")
-    truth = ["--as", "cloud", "--truth", "density_exact", "--confidence", "--json"]
+    truth = ["--as", "cloud", "--truth", "exact_density", "--confidence", "--json"]
     report = gaussmap("curvature", "t.ply", *truth, *options, "-o", "o.ply").json
     assert list(report)[:7] == KEYS_CLOUD[:7]
     assert (report["estimator"], report["normals"], report["notes"]) == (options[1], normals, [])
