@@ -25,7 +25,8 @@ enum class Estimator {
     /// Lachaud, Romon, Thibert, Coeurjolly, "Interpolated corrected curvature measures for polygonal
     /// surfaces", SGP 2020, and the 2022 stability results. `kappa` stays the Dirichlet energy.
     corrected,
-    /// Clouds. Least squares of the normals of the k nearest neighbours, by a quadratic in the tangent plane: its linear
+    /// Clouds. Least squares of the normals of the k nearest neighbours, by a quadratic in the tangent plane: its
+    /// linear
     /// part is the shape operator. Exact on spheres and cylinders with exact normals. Makes no `kappa`.
     regression,
     /// Clouds. Curvature of a polynomial of `degree` 2 to 4 through the point, fitted to the k ≥ 5 nearest neighbours.
@@ -149,11 +150,13 @@ struct CloudCurvature {
     double seconds_curvature = 0;
 };
 
-/// Total curvature of every point of a cloud, from the Delaunay fan in its tangent plane unless the estimator is another.
+/// Total curvature of every point of a cloud, from the Delaunay fan in its tangent plane unless the estimator is
+/// another.
 ///
 /// \param points   n points; non-finite ones are undefined and nobody's neighbour.
 /// \param normals  n vectors of any positive length, or empty to estimate them.
-/// \throw std::invalid_argument: k < 3 (5 for jets), a degree outside 1…4 (2…4 for the estimator `jet`), more than 2³¹ points, a number of
+/// \throw std::invalid_argument: k < 3 (5 for jets), a degree outside 1…4 (2…4 for the estimator `jet`), more than 2³¹
+/// points, a number of
 ///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
 /// Time O(n k log k) for points on surfaces; memory about 85 bytes a point beyond the input, the result included;
 /// 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
