@@ -163,7 +163,8 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
     unused("--k", !plan.mesh, why);
     unused("--orient", turned, fitted ? "it is for --estimator dirichlet" : why);
     unused("--degree", jet || (fitted && !fits_plane(o.normals)), fitted ? "a plane is fitted" : why);
-    unused("--normals", !jet || o.normals == "auto" || o.normals == "file", "the jet has a normal of its own");
+    const bool method = fits_plane(o.normals) || o.normals == "jet";
+    unused("--normals", !jet || !method, "the jet has a normal of its own");
     if (o.tensor && fitted && !(turned && o.orient == "mst"))
         plan.notes.push_back(
             fmt::format("each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
