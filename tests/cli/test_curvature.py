@@ -319,7 +319,7 @@ def test_fits_of_a_cloud(gaussmap, tmp_path, options, normals, rmse):
     assert report["truth"]["relative_rmse"] < rmse
     assert 0 < report["confidence"]["median_relative_error"] < 2 * rmse
     vertex = ply.read(tmp_path / "o.ply")[0]["vertex"]
-    assert min(vertex["density_error"]) > 0 and min(vertex["total_curvature"]) > 0
+    assert min(vertex["density_error"]) > 0 and min(vertex["scalar_total_curvature"]) > 0
 
 
 def test_what_fits_do_not_use_is_told(gaussmap):
