@@ -1,6 +1,6 @@
 #include "normal_regression.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
