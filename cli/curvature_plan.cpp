@@ -26,13 +26,17 @@ void refuse_other_kind(const CurvatureOptions& o, bool mesh) {
         throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for meshes and {} is taken as a cloud; use auto, "
                                                      "file, estimate, pca, wpca or jet",
                                                      o.normals, o.input));
+    if (mesh && (o.estimator == "regression" || o.estimator == "jet"))
+        throw Failure(Exit::wrong_usage, fmt::format("--estimator {} is for clouds and {} is a mesh; use auto, "
+                                                     "dirichlet or corrected, or --as cloud",
+                                                     o.estimator, o.input));
     if (!mesh && o.estimator == "corrected")
         throw Failure(Exit::wrong_usage, fmt::format("--estimator corrected is for meshes and {} is taken as a cloud; "
                                                      "use auto, dirichlet, regression or jet",
                                                      o.input));
 }
 
-/// What only some estimators have. \throw Failure (wrong usage)
+/// What only some estimators have or understand. \throw Failure (wrong usage)
 void refuse_what_estimator_lacks(const CurvatureOptions& o, Estimator estimator) {
     const char* name = gaussmap::estimator_name(estimator);
     if (o.confidence && (estimator == Estimator::dirichlet || estimator == Estimator::corrected))
@@ -40,6 +44,10 @@ void refuse_what_estimator_lacks(const CurvatureOptions& o, Estimator estimator)
                       fmt::format("--confidence comes from the residuals of a fit, and --estimator {} "
                                   "fits nothing; use --estimator auto, regression or jet",
                                   name));
+    if (estimator == Estimator::jet && o.degree == 1)
+        throw Failure(Exit::wrong_usage, "--degree 1 has no curvature; --estimator jet takes 2 to 4");
+    if (estimator == Estimator::jet && o.k < 5)
+        throw Failure(Exit::wrong_usage, fmt::format("--k {} is too small; --estimator jet takes at least 5", o.k));
     if (o.choice && estimator != Estimator::automatic)
         throw Failure(
             Exit::wrong_usage,
@@ -61,7 +69,8 @@ void plan_cloud(const CurvatureOptions& o, CurvaturePlan& plan) {
     plan.of_cloud.method = o.normals == "pca"    ? gaussmap::CloudNormals::pca
                            : o.normals == "wpca" ? gaussmap::CloudNormals::weighted_pca
                                                  : gaussmap::CloudNormals::jet;
-    plan.of_cloud.degree = o.degree != 0 ? o.degree : o.normals == "jet" ? 2 : 4;
+    const bool quadric = o.normals == "jet" && o.estimator != "jet";
+    plan.of_cloud.degree = o.degree != 0 ? o.degree : quadric ? 2 : 4;
     plan.of_cloud.orientation = o.orient == "mst"    ? Orientation::mst
                                 : o.orient == "none" ? Orientation::none
                                                      : Orientation::local;
@@ -88,13 +97,14 @@ void CurvatureOptions::declare(CommandLine& line) {
     line.option("--estimator", estimator, "E",
                 "dirichlet: energy of the normals (Chen 2023)\n"
                 "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
-                "regression: least squares of the differences of neighbours' normals\n"
-                "jet: curvature of a fitted polynomial\n"
+                "regression: least squares of the differences of neighbours' normals; clouds\n"
+                "jet: curvature of a fitted polynomial, which needs no normals; clouds\n"
                 "auto: what suits each vertex or point best (default: dirichlet)")
         ->check(one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
     line.group("Clouds");
     line.option("--k", k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)")->check(whole_number(3, 1000));
-    line.option("--degree", degree, "N", "Degree of the jet, 1 to 4 (default: 2 for --normals jet, 4 for estimate)")
+    line.option("--degree", degree, "N",
+                "Degree of the jet, 1 to 4, from 2 for --estimator jet (default: 2 for --normals jet, else 4)")
         ->check(whole_number(1, 4));
     line.option("--orient", orient, "O",
                 "How estimated normals are made to agree. local: around each point\n"
@@ -140,18 +150,26 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
         plan_cloud(o, plan);
     if (plan.file_normals) plan.normals = "file";
 
+    const Estimator estimator = plan.estimator();
+    const bool jet = !plan.mesh && estimator == Estimator::jet;
+    // The side of its normals is all that a fitted surface takes from the file.
+    if (jet) plan.normals = fmt::format("jet {}", plan.of_cloud.degree);
     const bool fitted = !plan.mesh && !plan.file_normals;
+    const bool turned = fitted && estimator == Estimator::dirichlet;
     const auto unused = [&](const char* name, bool used, const char* why) {
         if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
     };
     const char* why = plan.mesh ? "this is a mesh" : "the normals come from the file";
     unused("--k", !plan.mesh, why);
-    unused("--orient", fitted, why);
-    unused("--degree", fitted && !fits_plane(o.normals), fitted ? "a plane is fitted" : why);
-    if (o.tensor && fitted && o.orient != "mst")
+    unused("--orient", turned, fitted ? "it is for --estimator dirichlet" : why);
+    unused("--degree", jet || (fitted && !fits_plane(o.normals)), fitted ? "a plane is fitted" : why);
+    const bool method = fits_plane(o.normals) || o.normals == "jet";
+    unused("--normals", !jet || !method, "the jet has a normal of its own");
+    if (o.tensor && fitted && !(turned && o.orient == "mst"))
         plan.notes.push_back(
-            "each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
-            "need not agree from point to point; --orient mst makes them");
+            fmt::format("each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
+                        "need not agree from point to point; {}",
+                        turned ? "--orient mst makes them" : "normals in the file make them"));
     return plan;
 }
 

@@ -12,13 +12,13 @@
 #include <string>
 #include <utility>
 
-#include "automatic_cloud.h"
 #include "check.h"
 #include "check_cloud.h"
 #include "clock.h"
 #include "degenerate.h"
 #include "estimators.h"
 #include "fan.h"
+#include "fitted_cloud.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
 #include "neighbor_rows.h"
@@ -248,12 +248,23 @@ void place_normals(const Work& work, CloudCurvature& result) {
     }
 }
 
+/// Less than a quadric has no curvature.
+void check_jet(const CloudCurvatureOptions& options) {
+    if (options.degree < 2)
+        throw std::invalid_argument("degree = " + std::to_string(options.degree) +
+                                    " has no curvature; estimator = jet takes 2 to 4");
+    if (options.k < 5)
+        throw std::invalid_argument("k = " + std::to_string(options.k) +
+                                    " is too small; estimator = jet takes at least 5 neighbours");
+}
+
 void check(Points points, Points normals, const CloudCurvatureOptions& options) {
     check_estimator(options.estimator, Input::cloud, options.confidence);
     if (options.k < 3)
         throw std::invalid_argument("k = " + std::to_string(options.k) +
                                     " is too small; a fan takes at least 3 neighbours");
     check_degree(options.degree);
+    if (options.estimator == Estimator::jet) check_jet(options);
     if (!normals.empty()) check_count("normals", normals.count, points.count, "points");
 }
 
@@ -261,7 +272,7 @@ void check(Points points, Points normals, const CloudCurvatureOptions& options) 
 
 CloudCurvature cloud_curvature(Points points, Points normals, const CloudCurvatureOptions& options) {
     check(points, normals, options);
-    if (options.estimator == Estimator::automatic) return automatic_cloud(points, normals, options);
+    if (options.estimator != Estimator::dirichlet) return fitted_cloud(points, normals, options);
     CloudCurvature result;
     Lap lap;
     Work work = {options, ordered_cloud(points, part_of(options.run, 0, 0.2)), 0, false, {}, {}, {}};

@@ -45,6 +45,8 @@ void check_estimator(Estimator estimator, Input input, bool confidence) {
     const std::string shown = std::string("estimator = ") + estimator_name(estimator);
     if (estimator == Estimator::corrected && input == Input::cloud)
         throw std::invalid_argument(shown + " is for meshes; a cloud has no faces");
+    if ((estimator == Estimator::regression || estimator == Estimator::jet) && input == Input::mesh)
+        throw std::invalid_argument(shown + " is for clouds; take the vertices as one, or use dirichlet or corrected");
     const bool fits = estimator != Estimator::dirichlet && estimator != Estimator::corrected;
     if (confidence && !fits) throw std::invalid_argument(shown + " has no confidence: nothing is fitted");
 }

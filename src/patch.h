@@ -13,7 +13,7 @@ namespace gaussmap {
 /// How a neighbour's place in the tangent plane is told.
 enum class Chart {
     monge,  ///< by its projection ρ
-    chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (11))
+    chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (16))
 };
 
 /// What a neighbour weighs, by its squared distance in units of the patch's size.
@@ -21,8 +21,8 @@ struct EqualWeights {
     double operator()(double) const { return 1; }
 };
 
-/// 1 / |d|¹⁰, the inverse of the squared remainder of a quartic. Nearer than a fifth of the size all weigh alike, so
-/// that a pair of almost equal points does not decide alone.
+/// 1 / |d|¹⁰, the inverse of the squared remainder of a quartic (docs/method.md, eq. (17)). Nearer than a fifth of the
+/// size all weigh alike, so that a pair of almost equal points does not decide alone.
 struct RemainderWeights {
     double operator()(double squared) const {
         const double r = 1 / std::max(squared, 0.04), r2 = r * r;

@@ -25,9 +25,13 @@ enum class Estimator {
     /// Lachaud, Romon, Thibert, Coeurjolly, "Interpolated corrected curvature measures for polygonal
     /// surfaces", SGP 2020, and the 2022 stability results. `kappa` stays the Dirichlet energy.
     corrected,
-    /// Least squares of the neighbours' normal differences: the shape operator of the neighbourhood.
+    /// Clouds. Least squares of the normals of the k nearest neighbours, by a quadratic in the tangent plane: its
+    /// linear
+    /// part is the shape operator. Exact on spheres and cylinders with exact normals. Makes no `kappa`.
     regression,
-    /// Curvature of a fitted polynomial.
+    /// Clouds. Curvature of a polynomial of `degree` 2 to 4 through the point, fitted to the k ≥ 5 nearest neighbours.
+    /// Needs no normals, and makes its own; makes no `kappa`.
+    /// Cazals and Pouget, "Estimating differential quantities using polynomial fitting of osculating jets", CAGD 2005.
     jet,
 };
 
@@ -99,7 +103,7 @@ struct MeshCurvature {
 /// \param faces     m index triples; any connectivity (open, non-manifold, duplicated, degenerate).
 /// \param normals   n vectors of any positive length, or empty to estimate them (`options.weights`).
 /// \throw std::invalid_argument naming the array, index and value: an index outside [0, n),
-///        or a number of normals that is neither 0 nor n; confidence of an estimator that has none.
+///        or a number of normals that is neither 0 nor n; an estimator for clouds; confidence of one that has none.
 /// Time O(n + m); memory 48 bytes a vertex and 16 a face beyond the input; with the tensor 72 and 40 more.
 /// Source: the paper, eq. (3) of docs/method.md; normals by Max 1999 unless given; the shape operator by eq. (9), (10).
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals = {},
@@ -119,7 +123,7 @@ struct CloudCurvatureOptions {
     int k = 20;
     /// How normals are made when none are given.
     CloudNormals method = CloudNormals::jet;
-    /// Degree of the fitted jet, 1 to 4 (`CloudNormals::jet`).
+    /// Degree of the fitted jet, 1 to 4 (`CloudNormals::jet`), 2 to 4 (`Estimator::jet`).
     int degree = 4;
     /// How the normals of a neighbourhood are brought to agree. Given normals are never touched:
     /// this is for estimated ones.
@@ -140,21 +144,23 @@ struct CloudCurvature {
     std::size_t duplicates = 0;        ///< points at the position of an earlier one (they share its result)
     std::size_t non_finite = 0;        ///< points with a NaN or infinite coordinate
     std::size_t boundary = 0;          ///< points whose fan is open; copies count once
-    std::size_t lowered = 0;  ///< points whose jet had to take a lower degree than asked for; copies count once
+    std::size_t lowered = 0;  ///< points whose fit had to take a lower degree than asked for; copies count once
     double seconds_neighbors = 0;
     double seconds_normals = 0;
     double seconds_curvature = 0;
 };
 
-/// Total curvature of every point of a cloud, from the Delaunay fan in its tangent plane.
+/// Total curvature of every point of a cloud, from the Delaunay fan in its tangent plane unless the estimator is
+/// another.
 ///
 /// \param points   n points; non-finite ones are undefined and nobody's neighbour.
 /// \param normals  n vectors of any positive length, or empty to estimate them.
-/// \throw std::invalid_argument: k < 3, a degree outside 1…4, more than 2³¹ points, a number of
+/// \throw std::invalid_argument: k < 3 (5 for jets), a degree outside 1…4 (2…4 for the estimator `jet`), more than 2³¹
+/// points, a number of
 ///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
 /// Time O(n k log k) for points on surfaces; memory about 85 bytes a point beyond the input, the result included;
 /// 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
-/// Source: the paper; fan by inversion, eq. (7) of docs/method.md.
+/// Source: the paper; fan by inversion, eq. (7) of docs/method.md; jets and regression by eq. (13) to (15).
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
 
 }  // namespace gaussmap

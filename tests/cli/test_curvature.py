@@ -296,3 +296,45 @@ def test_human_report(gaussmap):
     assert labels == "normals estimator density percentiles kappa undefined degenerate duplicate non-finite truth time wrote".split()
     assert "(1/unit²)" in run.stderr and "\x1b" not in run.stderr
     assert gaussmap("curvature", "t.ply", "-o", "o.ply", "--quiet").stderr == ""
+
+
+@pytest.mark.parametrize(
+    "options, normals, rmse",
+    [
+        (["--estimator", "jet"], "jet 4", 0.003),
+        (["--estimator", "jet", "--degree", 3, "--k", 14], "jet 3", 0.05),
+        (["--estimator", "jet", "--degree", 2, "--k", 10, "--normals", "estimate"], "jet 2", 0.05),
+        (["--estimator", "regression"], "file", 0.02),
+        (["--estimator", "regression", "--k", 8], "file", 0.01),
+        (["--estimator", "regression", "--normals", "jet", "--degree", 4], "jet 4", 0.03),
+    ],
+)
+def test_fits_of_a_cloud(gaussmap, tmp_path, options, normals, rmse):
+    gaussmap("shape", "torus", "--grid", "90x90", "--jitter", 0.2, "--seed", 1, "-o", "t.ply")
+    truth = ["--as", "cloud", "--truth", "exact_density", "--confidence", "--json"]
+    report = gaussmap("curvature", "t.ply", *truth, *options, "-o", "o.ply").json
+    assert list(report)[:7] == KEYS_CLOUD[:7]
+    assert (report["estimator"], report["normals"], report["notes"]) == (options[1], normals, [])
+    assert report["undefined"] == report["lowered"] == report["boundary"] == 0
+    assert report["truth"]["relative_rmse"] < rmse
+    assert 0 < report["confidence"]["median_relative_error"] < 2 * rmse
+    vertex = ply.read(tmp_path / "o.ply")[0]["vertex"]
+    assert min(vertex["density_error"]) > 0 and min(vertex["scalar_total_curvature"]) > 0
+
+
+def test_what_fits_do_not_use_is_told(gaussmap):
+    gaussmap("shape", "torus", "-o", "t.ply")
+
+    def notes(*options):
+        return gaussmap("curvature", "t.ply", "--as", "cloud", "--json", *options).json["notes"]
+
+    estimate = ["--normals", "estimate"]
+    dirichlet_only = "--orient is not used: it is for --estimator dirichlet"
+    for options in (["--estimator", "jet"], ["--estimator", "regression"]):
+        assert notes(*options, "--k", 14, "--degree", 3, "--orient", "mst", *estimate) == [dirichlet_only]
+    assert notes("--estimator", "regression", "--degree", 3) == ["--degree is not used: the normals come from the file"]
+    assert notes("--estimator", "jet", "--degree", 3) == []
+    assert notes("--estimator", "jet", "--normals", "pca") == ["--normals is not used: the jet has a normal of its own"]
+    (sides,) = notes("--estimator", "jet", "--tensor", *estimate)
+    assert sides.endswith("need not agree from point to point; normals in the file make them")
+    assert notes("--estimator", "jet", "--tensor") == []

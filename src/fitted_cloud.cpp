@@ -1,4 +1,4 @@
-#include "automatic_cloud.h"
+#include "fitted_cloud.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,9 @@
 
 #include "automatic.h"
 #include "clock.h"
+#include "jet_curvature.h"
 #include "neighbor_rows.h"
+#include "normal_regression.h"
 #include "ordered_cloud.h"
 #include "parallel.h"
 #include "shape_operator.h"
@@ -44,23 +46,48 @@ double diagonal(const OrderedCloud& cloud) {
 }
 
 /// Element i's values, to a place of the result.
-void place(const AutomaticCurvature& found, std::size_t i, Points normals, std::size_t to,
+void place(const FittedCurvature& found, std::size_t i, Points normals, std::size_t to,
            const CloudCurvatureOptions& options, CloudCurvature& result) {
     Vec3 normal = found.normal[i];
     double sign = 1;
     // Looking as the given normal does; a fitted normal says nothing of the side, so up.
-    if (!normals.empty() ? dot(normal, load(normals[to])) < 0 : dot(normal, upward(normal)) < 0)
-        normal = -normal, sign = -1;
+    Vec3 side = upward(normal);
+    if (!normals.empty() && finite(unit(load(normals[to])))) side = load(normals[to]);
+    if (dot(normal, side) < 0) normal = -normal, sign = -1;
     result.density[to] = found.density[i];
-    result.choice[to] = found.choice[i];
+    if (!found.choice.empty()) result.choice[to] = found.choice[i];
     store(result.normals.data() + 3 * to, normal);
     if (options.confidence) result.error[to] = found.error[i];
     if (options.tensor && finite(normal)) store(result.tensor, to, principal(found.tensor[i], sign, normal));
 }
 
+/// Unit normals of the first holders of positions.
+ElementNormals given_normals(const OrderedCloud& cloud, Points normals) {
+    ElementNormals given;
+    given.normal.resize(cloud.count());
+    for (std::size_t i = 0; i < cloud.count(); ++i)
+        given.normal[i] = unit(load(normals[static_cast<std::size_t>(cloud.source[i])]));
+    return given;
+}
+
+FittedCurvature fit(const OrderedCloud& cloud, double size, Points normals, const CloudCurvatureOptions& options,
+                    const Execution& run, CloudCurvature& result) {
+    const Elements elements = elements_of(cloud);
+    if (options.estimator == Estimator::automatic) return automatic_curvature(elements, size, run);
+    if (options.estimator == Estimator::jet)
+        return jet_curvature(elements, options.k, options.degree, options.confidence, run);
+    Lap lap;
+    const ElementNormals known =
+        normals.empty() ? fit_normals(elements, options.k, options.method, options.degree, part_of(run, 0, 0.6))
+                        : given_normals(cloud, normals);
+    lap.add_to(result.seconds_normals);
+    return normal_regression(elements, options.k, known, options.confidence,
+                             part_of(run, normals.empty() ? 0.6 : 0, 1));
+}
+
 }  // namespace
 
-CloudCurvature automatic_cloud(Points points, Points normals, const CloudCurvatureOptions& options) {
+CloudCurvature fitted_cloud(Points points, Points normals, const CloudCurvatureOptions& options) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     CloudCurvature result;
     Lap lap;
@@ -72,11 +99,11 @@ CloudCurvature automatic_cloud(Points points, Points normals, const CloudCurvatu
     result.density.assign(points.count, nan);
     result.kappa.assign(points.count, nan);
     result.normals.assign(3 * points.count, nan);
-    result.choice.assign(points.count, 0);
+    if (options.estimator == Estimator::automatic) result.choice.assign(points.count, 0);
     if (options.confidence) result.error.assign(points.count, nan);
     if (options.tensor) result.tensor = undefined_tensor(points.count);
     if (const double size = diagonal(cloud); std::isfinite(size) && size > 0) {
-        const AutomaticCurvature found = automatic_curvature(elements_of(cloud), size, part_of(options.run, 0.05, 1));
+        const FittedCurvature found = fit(cloud, size, normals, options, part_of(options.run, 0.05, 1), result);
         result.lowered = found.lowered;
         for (std::size_t i = 0; i < cloud.count(); ++i)
             place(found, i, normals, static_cast<std::size_t>(cloud.source[i]), options, result);
@@ -84,13 +111,14 @@ CloudCurvature automatic_cloud(Points points, Points normals, const CloudCurvatu
     for (const auto& [index, first] : cloud.copies) {
         const auto to = static_cast<std::size_t>(index), from = static_cast<std::size_t>(first);
         result.density[to] = result.density[from];
-        result.choice[to] = result.choice[from];
+        if (!result.choice.empty()) result.choice[to] = result.choice[from];
         store(result.normals.data() + 3 * to, load(result.normals.data() + 3 * from));
         if (options.confidence) result.error[to] = result.error[from];
         if (options.tensor) copy(result.tensor, from, to);
     }
     for (const double density : result.density) result.undefined += std::isnan(density) ? 1 : 0;
     lap.add_to(result.seconds_curvature);
+    result.seconds_curvature -= result.seconds_normals;
     return result;
 }
 
