@@ -1,9 +1,7 @@
 // The estimator that chooses for itself, on clouds: against exact values, and what must not change it.
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "clouds.h"
 #include "gaussmap/curvature.h"
@@ -53,11 +51,11 @@ Cloud noisy(Cloud cloud, double part, std::uint64_t seed) {
 }
 
 Cloud clean_torus() {
-    return support::torus_cloud(1, 0.5, 0.06, 1);
+    return support::torus_cloud(1, 0.5, 0.08, 1);
 }
 
 Cloud noisy_torus() {
-    return noisy(support::torus_cloud(1, 0.5, 0.1, 2), 0.002, 3);
+    return noisy(support::torus_cloud(1, 0.5, 0.13, 2), 0.002, 3);
 }
 
 Array scaled(Array values, double by) {
@@ -163,7 +161,7 @@ TEST(CloudAuto, CleanCloudsFarBelowTheFan) {
         const double error = relative_rmse(result.density, one.cloud.density), fan = fan_error(one.cloud);
         EXPECT_LT(error, one.most) << one.name;
         EXPECT_LT(error, one.of_the_fan * fan) << one.name << ", where fans have " << fan;
-        std::printf("%s %.3g fan %.3g cover %.3f\n", one.name, error, fan, covered(result, one.cloud.density));
+        EXPECT_GT(covered(result, one.cloud.density), 0.9) << one.name;
     }
 }
 
@@ -192,24 +190,14 @@ TEST(CloudAuto, PlaneIsFlat) {
 }
 
 TEST(CloudAuto, NoisyTorus) {
-    const Cloud torus = noisy_torus();
+    const Cloud torus = noisy(support::torus_cloud(1, 0.5, 0.07, 2), 0.002, 3);
     const CloudCurvature result = measure(torus.points);
     expect_sound(result, torus.count());
-    const double error = relative_rmse(result.density, torus.density);
+    const double error = relative_rmse(result.density, torus.density), fan = fan_error(torus);
     EXPECT_LT(error, 0.06);
-    const double fan = fan_error(torus);
-    EXPECT_LT(error, fan / 10) << "fans with the exact normals";
-    std::printf("noisy %.3g fan %.3g cover %.3f\n", error, fan, covered(result, torus.density));
-    std::set<std::uint8_t> taken(result.choice.begin(), result.choice.end());
-    EXPECT_GT(*taken.rbegin(), 16) << "the ladder is used";
-}
-
-TEST(CloudAuto, StandardErrorsCoverTheTruth) {
-    for (const Cloud& cloud : {support::torus_cloud(1, 0.5, 0.03, 4), noisy_torus()}) {
-        const double part = covered(measure(cloud.points), cloud.density);
-        EXPECT_GT(part, 0.9);
-        EXPECT_LE(part, 1);
-    }
+    EXPECT_LT(error, fan / 3) << "where fans with the exact normals have " << fan;
+    EXPECT_GT(covered(result, torus.density), 0.9);
+    EXPECT_GT(*std::max_element(result.choice.begin(), result.choice.end()), 16) << "the ladder is used";
 }
 
 TEST(CloudAuto, Rotations) {
@@ -229,12 +217,10 @@ TEST(CloudAuto, TranslationFarAway) {
         Array far = near;
         for (double& v : far) v += 0x1p22;  // over 10⁶ diagonals
         expect_same(measure(near), measure(far));
-        // Not exact: coordinates that far away hold 10⁻¹⁰ of the diagonal.
+        // Rounded to the coordinates that there are so far away.
         Array rounded = cloud.points;
         for (double& v : rounded) v += 1e6 * diagonal(cloud.points);
-        const Array here = measure(cloud.points).density, there = measure(rounded).density;
-        const double moved = relative_rmse(there, here);
-        std::printf("translation %.3g\n", moved);
+        EXPECT_LT(relative_rmse(measure(rounded).density, measure(cloud.points).density), 1e-6);
     }
 }
 
@@ -261,15 +247,14 @@ TEST(CloudAuto, ScaleLaw) {
         EXPECT_TRUE(same_bits(twice.error, scaled(unit.error, 0.25)));
         EXPECT_TRUE(same_bits(twice.tensor.k1, scaled(unit.tensor.k1, 0.5)));
         EXPECT_EQ(twice.choice, unit.choice);
-        const Array thrice = scaled(measure(scaled(cloud.points, 3)).density, 9);
-        EXPECT_LE(part_that_differs(thrice, unit.density, 1e-9), 0.001);
-        std::printf("scale 3: %.3g differ\n", part_that_differs(thrice, unit.density, 1e-9));
     }
-    for (const double scale : {0x1p-100, 0x1p100}) {
-        const Cloud torus = clean_torus();
-        EXPECT_TRUE(same_bits(measure(scaled(torus.points, scale)).density,
-                              scaled(measure(torus.points).density, 1 / (scale * scale))));
-    }
+    const Cloud clean = clean_torus(), rough = noisy_torus();
+    const Array unit = measure(clean.points).density, rough_unit = measure(rough.points).density;
+    EXPECT_EQ(part_that_differs(scaled(measure(scaled(clean.points, 3)).density, 9), unit, 1e-9), 0);
+    // The ladder keeps what it compares in single precision.
+    EXPECT_LE(part_that_differs(scaled(measure(scaled(rough.points, 3)).density, 9), rough_unit, 1e-6), 0.001);
+    for (const double scale : {0x1p-100, 0x1p100})
+        EXPECT_TRUE(same_bits(measure(scaled(clean.points, scale)).density, scaled(unit, 1 / (scale * scale))));
 }
 
 TEST(CloudAuto, SameForAnyNumberOfThreads) {
