@@ -70,9 +70,9 @@ std::string most_frequent(const Json& counts) {
         if (i >= 3)
             others += sorted[i].first;
         else
-            out += fmt::format("{}{}: {}", out.empty() ? "" : ", ", sorted[i].second, count(sorted[i].first));
+            out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", sorted[i].second, count(sorted[i].first));
     }
-    return others > 0 ? out + ", others: " + count(others) : out;
+    return others > 0 ? out + "; others: " + count(others) : out;
 }
 
 void add_tensor(Table& table, const Json& tensor) {
