@@ -155,8 +155,8 @@ struct CloudCurvature {
 /// \param normals  n vectors of any positive length, or empty to estimate them.
 /// \throw std::invalid_argument: k < 3, a degree outside 1…4, more than 2³¹ points, a number of
 ///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
-/// Time O(n k log k) for points on surfaces; memory about 85 bytes a point beyond the input, the result included;
-/// 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
+/// Time O(n) fits for `automatic`, more where there is noise; else O(n k log k) for points on surfaces, memory about 85
+/// bytes a point beyond the input, the result included; 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
 /// Source: the paper; fan by inversion, eq. (7) of docs/method.md.
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
 
