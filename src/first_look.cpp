@@ -61,7 +61,12 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     Moments<2> quadric;
     SurfaceJet jet;
     look.lowered = true;
-    if (count < 5 || !level(quadric, neighbors, few, view, jet)) return look;
+    // The nearest may lie on a conic, as of one or two lines of a scan; further ones then tell more.
+    if (count < 5) return look;
+    if (!level(quadric, neighbors, few, view, jet)) {
+        view = {principal_normal(neighbors, count), {}, length(neighbors[static_cast<std::size_t>(count) - 1])};
+        if (!finite(view.normal) || !level(quadric, neighbors, count, view, jet)) return look;
+    }
     look.normal = jet.normal;
     look.chord = look.monge = jet.tensor;
     look.chord_density = look.monge_density = squared_norm(jet.tensor);
