@@ -369,6 +369,16 @@ TEST(CloudAuto, LinesAndPilesAreUndefined) {
     EXPECT_EQ(piled.duplicates, 49u);
 }
 
+TEST(CloudAuto, LinesOfAScanAreDefined) {
+    Array points;
+    for (int row = 0; row < 12; ++row)
+        for (int i = 0; i < 200; ++i) points.insert(points.end(), {0.1 * row, 0.02 * i, 0.005 * row * row});
+    const CloudCurvature result = measure(points);
+    expect_sound(result, 2400);
+    for (std::size_t i = 200; i < 2200; ++i)  // the outermost see two lines, which are a conic
+        ASSERT_TRUE(std::isfinite(result.density[i])) << i << ": the nearest nine lie on one line";
+}
+
 TEST(CloudAuto, TwoFarClustersAreAsEachAlone) {
     const Array torus = coarse(clean_torus().points);
     const CloudCurvature alone = measure(torus), both = measure(joined(torus, shifted(torus, 0x1p14)));
