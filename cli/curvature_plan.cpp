@@ -54,6 +54,15 @@ void refuse_what_estimator_lacks(const CurvatureOptions& o, Estimator estimator)
             fmt::format("--choice is what --estimator auto took, and the estimator is {}; use --estimator auto", name));
 }
 
+/// Clouds are measured with `auto`, unless options ask for normals or fans of some kind.
+Estimator estimator_for(const CurvatureOptions& o, const CommandLine& line, bool mesh) {
+    for (const Estimator estimator : estimators)
+        if (o.estimator == gaussmap::estimator_name(estimator)) return estimator;
+    const bool plain = o.normals == "auto" || o.normals == "estimate";
+    const bool asked = line.given("--k") || line.given("--degree") || line.given("--orient") || !plain;
+    return mesh || asked ? Estimator::dirichlet : Estimator::automatic;
+}
+
 void plan_mesh(const CurvatureOptions& o, CurvaturePlan& plan) {
     using gaussmap::NormalWeights;
     const bool chosen = o.normals == "angle" || o.normals == "area";
@@ -77,6 +86,37 @@ void plan_cloud(const CurvatureOptions& o, CurvaturePlan& plan) {
     plan.normals = fits_plane(o.normals) ? o.normals : fmt::format("jet {}", plan.of_cloud.degree);
 }
 
+/// Notes of options that were given and are not used, and of signs.
+void note_what_is_lost(const CurvatureOptions& o, const CommandLine& line, CurvaturePlan& plan) {
+    const Estimator estimator = plan.estimator();
+    const bool fitted = !plan.mesh && !plan.file_normals, automatic = plan.automatic_cloud();
+    const bool jet = !plan.mesh && estimator == Estimator::jet;
+    const bool turned = fitted && estimator == Estimator::dirichlet;
+    const auto unused = [&](const char* name, bool used, const char* why) {
+        if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
+    };
+    const char* why = plan.mesh   ? "this is a mesh"
+                      : automatic ? "--estimator auto chooses for itself"
+                                  : "the normals come from the file";
+    unused("--k", !plan.mesh && !automatic, why);
+    unused("--orient", turned, fitted && !automatic ? "it is for --estimator dirichlet" : why);
+    unused("--degree", jet || (fitted && !automatic && !fits_plane(o.normals)),
+           fitted && !automatic ? "a plane is fitted" : why);
+    if (automatic && o.normals == "file")
+        plan.notes.push_back("--normals file tells the signs alone: --estimator auto fits its own");
+    else if (automatic)
+        unused("--normals", o.normals == "auto" || o.normals == "estimate", why);
+    else
+        unused("--normals", !jet || (!fits_plane(o.normals) && o.normals != "jet"), "the jet has a normal of its own");
+    if (o.tensor && fitted && !(turned && o.orient == "mst"))
+        plan.notes.push_back(
+            fmt::format("each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
+                        "need not agree from point to point; {}",
+                        turned      ? "--orient mst makes them"
+                        : automatic ? "normals in the file make them, and gaussmap normals writes such"
+                                    : "normals in the file make them"));
+}
+
 }  // namespace
 
 void CurvatureOptions::declare(CommandLine& line) {
@@ -94,15 +134,19 @@ void CurvatureOptions::declare(CommandLine& line) {
                 "pca, wpca, jet: clouds; a fitted plane, the same with near points weighing more, a fitted polynomial "
                 "(default: auto)")
         ->check(one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "wpca", "jet"}));
-    line.option("--estimator", estimator, "E",
-                "dirichlet: energy of the normals (Chen 2023)\n"
-                "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
-                "regression: least squares of the differences of neighbours' normals; clouds\n"
-                "jet: curvature of a fitted polynomial, which needs no normals; clouds\n"
-                "auto: what suits each vertex or point best (default: dirichlet)")
+    line.option(
+            "--estimator", estimator, "E",
+            "dirichlet: energy of the normals (Chen 2023)\n"
+            "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
+            "regression: least squares of the differences of neighbours' normals; clouds\n"
+            "jet: curvature of a fitted polynomial, which needs no normals; clouds\n"
+            "auto: what suits each vertex or point best; on clouds surfaces fitted to the points, where normals tell "
+            "signs alone (default: clouds auto, unless --k, --degree, --orient or --normals ask for normals of some "
+            "kind; else dirichlet)")
         ->check(one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
     line.group("Clouds");
-    line.option("--k", k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)")->check(whole_number(3, 1000));
+    line.option("--k", k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20; auto chooses)")
+        ->check(whole_number(3, 1000));
     line.option("--degree", degree, "N",
                 "Degree of the jet, 1 to 4, from 2 for --estimator jet (default: 2 for --normals jet, else 4)")
         ->check(whole_number(1, 4));
@@ -131,9 +175,7 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
     CurvaturePlan plan;
     plan.mesh = taken_as_mesh(o.as, geometry, o.input);
     refuse_other_kind(o, plan.mesh);
-    for (const Estimator estimator : estimators)
-        if (o.estimator == gaussmap::estimator_name(estimator))
-            plan.of_mesh.estimator = plan.of_cloud.estimator = estimator;
+    plan.of_mesh.estimator = plan.of_cloud.estimator = estimator_for(o, line, plan.mesh);
     refuse_what_estimator_lacks(o, plan.estimator());
     plan.of_mesh.tensor = plan.of_cloud.tensor = o.tensor;
     plan.of_mesh.confidence = plan.of_cloud.confidence = o.confidence;
@@ -148,28 +190,13 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
         plan_mesh(o, plan);
     else
         plan_cloud(o, plan);
-    if (plan.file_normals) plan.normals = "file";
-
-    const Estimator estimator = plan.estimator();
-    const bool jet = !plan.mesh && estimator == Estimator::jet;
-    // The side of its normals is all that a fitted surface takes from the file.
-    if (jet) plan.normals = fmt::format("jet {}", plan.of_cloud.degree);
-    const bool fitted = !plan.mesh && !plan.file_normals;
-    const bool turned = fitted && estimator == Estimator::dirichlet;
-    const auto unused = [&](const char* name, bool used, const char* why) {
-        if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
-    };
-    const char* why = plan.mesh ? "this is a mesh" : "the normals come from the file";
-    unused("--k", !plan.mesh, why);
-    unused("--orient", turned, fitted ? "it is for --estimator dirichlet" : why);
-    unused("--degree", jet || (fitted && !fits_plane(o.normals)), fitted ? "a plane is fitted" : why);
-    const bool method = fits_plane(o.normals) || o.normals == "jet";
-    unused("--normals", !jet || !method, "the jet has a normal of its own");
-    if (o.tensor && fitted && !(turned && o.orient == "mst"))
-        plan.notes.push_back(
-            fmt::format("each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
-                        "need not agree from point to point; {}",
-                        turned ? "--orient mst makes them" : "normals in the file make them"));
+    if (plan.automatic_cloud())
+        plan.normals = "fitted";
+    else if (!plan.mesh && plan.estimator() == Estimator::jet)
+        plan.normals = fmt::format("jet {}", plan.of_cloud.degree);
+    else if (plan.file_normals)
+        plan.normals = "file";
+    note_what_is_lost(o, line, plan);
     return plan;
 }
 

@@ -22,12 +22,13 @@ struct CurvatureOptions {
 struct CurvaturePlan {
     bool mesh = false;
     bool file_normals = false;
-    std::string normals;  ///< how they come about, for the report: "file", "max", "jet 4"
+    std::string normals;  ///< how they come about, for the report: "file", "max", "jet 4", "fitted"
     gaussmap::MeshCurvatureOptions of_mesh;
     gaussmap::CloudCurvatureOptions of_cloud;
     std::vector<std::string> notes;
 
     gaussmap::Estimator estimator() const { return mesh ? of_mesh.estimator : of_cloud.estimator; }
+    bool automatic_cloud() const { return !mesh && of_cloud.estimator == gaussmap::Estimator::automatic; }
 };
 
 /// \throw Failure where the options do not fit the input.

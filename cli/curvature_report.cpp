@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace cli {
 namespace {
@@ -57,11 +59,20 @@ Json chosen(const std::vector<std::uint8_t>& choice) {
     return out;
 }
 
-std::string listed_counts(const Json& counts) {
+/// The three most frequent, and how many took another.
+std::string most_frequent(const Json& counts) {
+    std::vector<std::pair<std::size_t, std::string>> sorted;
+    for (const auto& [name, n] : counts.items()) sorted.emplace_back(n.get<std::size_t>(), name);
+    std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::string out;
-    for (const auto& [name, n] : counts.items())
-        out += fmt::format("{}{} {}", out.empty() ? "" : ", ", name, count(n.get<std::size_t>()));
-    return out;
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
+        if (i >= 3)
+            others += sorted[i].first;
+        else
+            out += fmt::format("{}{}: {}", out.empty() ? "" : "; ", sorted[i].second, count(sorted[i].first));
+    }
+    return others > 0 ? out + "; others: " + count(others) : out;
 }
 
 void add_tensor(Table& table, const Json& tensor) {
@@ -94,8 +105,9 @@ Json curvature_report(const CurvatureOptions& o, const CurvaturePlan& plan, cons
     report["faces"] = geometry.face_count();
     report["normals"] = plan.normals;
     report["estimator"] = gaussmap::estimator_name(plan.estimator());
-    report["k"] = plan.mesh ? Json() : Json(o.k);
-    report["orient"] = plan.mesh || plan.file_normals ? Json() : Json(o.orient);
+    const bool fans = !plan.mesh && !plan.automatic_cloud();
+    report["k"] = fans ? Json(o.k) : Json();
+    report["orient"] = fans && !plan.file_normals ? Json(o.orient) : Json();
     report["threads"] = threads;
     if (plan.mesh) report["kappa"] = {{"sum", measured.kappa_sum}};
     report["density"] = statistics(measured.density);
@@ -126,8 +138,8 @@ Table curvature_table(const Json& report) {
     Table table;
     table.add("normals", report["normals"].get<std::string>());
     table.add("estimator", report["estimator"].get<std::string>());
-    where_there("chosen", [&](const Json& chosen) { table.add("chosen", listed_counts(chosen)); });
-    if (!mesh) table.add("neighbours", number(report["k"]));
+    where_there("chosen", [&](const Json& chosen) { table.add("chosen", most_frequent(chosen)); });
+    if (!report["k"].is_null()) table.add("neighbours", number(report["k"]));
     const Json& d = report["density"];
     table.add("density", fmt::format("mean {}, rms {}, from {} to {} (1/unit²)", number(d["mean"]), number(d["rms"]),
                                      number(d["min"]), number(d["max"])));
@@ -141,7 +153,7 @@ Table curvature_table(const Json& report) {
     if (mesh) table.add("degenerate", count(n("degenerate_faces"), "face", "faces") + " of no area");
     table.add("duplicate", count(n("duplicates"), one, many) + " at the position of an earlier one");
     table.add("non-finite", count(n("non_finite"), one, many));
-    if (!mesh) table.add("boundary", count(n("boundary"), one, many));
+    if (!mesh && !report["boundary"].is_null()) table.add("boundary", count(n("boundary"), one, many));
     if (!mesh && n("lowered") > 0) table.add("lower degree", count(n("lowered"), one, many));
     where_there("truth", [&](const Json& part) { add_truth(table, part, one, many); });
     add_ending(table, report);

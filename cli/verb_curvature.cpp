@@ -17,8 +17,8 @@ using gaussmap::make_property;
 using gaussmap::Property;
 
 constexpr const char* about =
-    "Measures the total curvature k1² + k2² of a triangle mesh or a point cloud from the variation of its "
-    "normals.\n\n"
+    "Measures the total curvature k1² + k2² of a triangle mesh from the variation of its normals, or of a point "
+    "cloud from surfaces fitted to it, or from its normals.\n\n"
     "The density of a vertex or point (and of a face) has the unit 1/length², with the length unit of the file: "
     "it is 2/r² on a sphere of radius r. The kappa of a face is its integral over the face and has no unit. "
     "Where nothing defines it (a vertex of no face, a point with too few neighbours) the density is NaN, in "
@@ -31,7 +31,7 @@ constexpr const char* examples =
     "gaussmap curvature bunny.ply                       measure and report\n"
     "gaussmap curvature bunny.ply -o out.ply --color    and write it, to look at\n"
     "gaussmap curvature bunny.ply -o bunny.png          a picture of it\n"
-    "gaussmap curvature scan.pcd --k 30 -o scan.ply     a cloud, 30 neighbours\n"
+    "gaussmap curvature scan.pcd --k 30 -o scan.ply     a cloud, fans of 30\n"
     "gaussmap curvature a.obj -o a.ply -o a.xyz --json  two files, a JSON report\n"
     "gaussmap curvature a.ply --tensor -o b.ply         k1, k2, directions\n"
     "gaussmap curvature torus.ply --truth exact_density compare with the truth";
@@ -69,7 +69,7 @@ Measured measure_cloud(const Geometry& geometry, const CurvaturePlan& plan) {
     out.counts = {{"undefined", result.undefined},
                   {"duplicates", result.duplicates},
                   {"non_finite", result.non_finite},
-                  {"boundary", result.boundary},
+                  {"boundary", plan.automatic_cloud() ? Json() : Json(result.boundary)},
                   {"lowered", result.lowered}};
     out.seconds_neighbors = result.seconds_neighbors;
     out.seconds_normals = result.seconds_normals;

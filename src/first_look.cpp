@@ -54,12 +54,17 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     if (count < 3) return look;
     const int few = std::min(count, nearest);
     View view = {principal_normal(neighbors, std::min(count, 12)), {}, length(neighbors[few - 1])};
-    if (!finite(view.normal) || !(view.size > 0)) return look;
+    if (!(view.size > 0)) return look;
 
     Moments<2> quadric;
     SurfaceJet jet;
     look.lowered = true;
-    if (count < 5 || !level(quadric, neighbors, few, view, jet)) return look;
+    // The nearest may lie on a conic, as of one or two lines of a scan; further ones then tell more.
+    if (count < 5) return look;
+    if (!finite(view.normal) || !level(quadric, neighbors, few, view, jet)) {
+        view = {principal_normal(neighbors, count), {}, length(neighbors[static_cast<std::size_t>(count) - 1])};
+        if (!finite(view.normal) || !level(quadric, neighbors, count, view, jet)) return look;
+    }
     look.normal = jet.normal;
     const Vec3 quadric_normal = jet.normal;
     // Nothing tells the remainder of a quadric alone: take it for as large as the value.

@@ -264,7 +264,7 @@ void Ladder::weigh_family(int rung, int family, const Field& residual) {
         bias_[family][i] = std::max(bias_[family][i], static_cast<float>(per_change * (change[i] - sure * noise)));
         least_[family][i] = std::min(least_[family][i], risk);
         // Far above its own best it will not come back.
-        if (risk > 10 * least_[family][i]) dead_[family][i] = 1;
+        if (risk > 3 * least_[family][i]) dead_[family][i] = 1;
         if (!(risk < best_[i])) continue;
         best_[i] = risk;
         result_.density[i] = std::max(0.0, unbiased(lower_, i));

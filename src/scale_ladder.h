@@ -16,7 +16,7 @@ constexpr int families = 4;
 
 /// Neighbours on a rung, from 0 up: half as many again as on the one below.
 int rung_neighbors(int rung);
-constexpr int most_rungs = 13;
+constexpr int most_rungs = 11;
 
 /// The choice that stands for a family on a rung.
 constexpr std::uint8_t first_rung_choice = 16;

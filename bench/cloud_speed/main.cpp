@@ -78,6 +78,7 @@ struct Path {
 Path path(const char* name, CloudNormals method, int degree, double limit) {
     return {name, limit, [=](Points points, int threads) {
                 CloudCurvatureOptions options;
+                options.estimator = Estimator::dirichlet;
                 options.k = k;
                 options.method = method;
                 options.degree = degree;
@@ -186,6 +187,7 @@ void measure_memory(std::size_t count) {
     std::vector<Path> ways = our_paths();
     ways.push_back({"the same, spanning tree", 0, [](Points points, int threads) {
                         CloudCurvatureOptions options;
+                        options.estimator = Estimator::dirichlet;
                         options.k = k;
                         options.degree = 2;
                         options.orientation = Orientation::mst;

@@ -1,6 +1,7 @@
-// Total curvature, k1² + k2², of triangle meshes and point clouds from the variation of the normals.
+// Total curvature, k1² + k2², of triangle meshes from the variation of the normals, and of point clouds from surfaces
+// fitted to them or from the variation of the normals.
 //
-// Method: Crane He Chen, "Estimating Discrete Total Curvature with Per Triangle Normal Variation",
+// Method of the latter: Crane He Chen, "Estimating Discrete Total Curvature with Per Triangle Normal Variation",
 // SIGGRAPH 2023 Talks (arXiv 2305.12653). Equation numbers refer to docs/method.md.
 #pragma once
 
@@ -38,8 +39,8 @@ enum class Estimator {
 /// "auto", "dirichlet", "corrected", "regression", "jet".
 const char* estimator_name(Estimator estimator);
 
-/// What a value of `choice` stands for, in a word or two: "dirichlet", "jet 4"; "none" for 0, where nothing was
-/// defined. \throw std::invalid_argument on a value that is never written.
+/// What a value of `choice` stands for, in a word or two, with the neighbours fitted to: "quartic 24", "mean quadric
+/// 54"; "none" for 0, where nothing was defined. \throw std::invalid_argument on a value that is never written.
 const char* choice_name(std::uint8_t choice);
 
 /// Principal curvatures and directions: the shape operator dn/dx of each element, diagonalised. k1 ≥ k2, and a sphere
@@ -117,8 +118,9 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals = 
 void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density_and_area,
                     const Execution& run = {});
 
+/// All but the estimator, `tensor`, `confidence` and `run` is nothing to `automatic`.
 struct CloudCurvatureOptions {
-    Estimator estimator = Estimator::dirichlet;
+    Estimator estimator = Estimator::automatic;
     /// Neighbours a point, at least 3. Points at one same position count once.
     int k = 20;
     /// How normals are made when none are given.
@@ -135,32 +137,34 @@ struct CloudCurvatureOptions {
 
 struct CloudCurvature {
     std::vector<double> density;  ///< a point, 1/length²; NaN where undefined
-    std::vector<double> kappa;    ///< a point, sum over its fan, no unit; NaN where undefined
-    std::vector<double> normals;  ///< the unit normals used, 3 a point; NaN where undefined
+    std::vector<double> kappa;    ///< a point, sum over its fan, no unit; NaN where undefined, and without fans
+    std::vector<double> normals;  ///< the unit normals used or fitted, 3 a point; NaN where undefined
     PrincipalCurvatures tensor;   ///< a point, signed by its own normal; empty unless asked for
     std::vector<double> error;    ///< a point, the standard error of its density, 1/length²; empty unless asked for
     std::vector<std::uint8_t> choice;  ///< a point, what `automatic` took (`choice_name`); empty for other estimators
     std::size_t undefined = 0;         ///< points whose density is NaN
     std::size_t duplicates = 0;        ///< points at the position of an earlier one (they share its result)
     std::size_t non_finite = 0;        ///< points with a NaN or infinite coordinate
-    std::size_t boundary = 0;          ///< points whose fan is open; copies count once
-    std::size_t lowered = 0;  ///< points whose fit had to take a lower degree than asked for; copies count once
+    std::size_t boundary = 0;          ///< points whose fan is open; copies count once; 0 without fans
+    std::size_t lowered = 0;  ///< points with too few neighbours for the jet asked for, or a quartic; copies count once
     double seconds_neighbors = 0;
     double seconds_normals = 0;
     double seconds_curvature = 0;
 };
 
-/// Total curvature of every point of a cloud, from the Delaunay fan in its tangent plane unless the estimator is
-/// another.
+/// Total curvature of every point of a cloud: `automatic` from surfaces fitted to the points, where given normals tell
+/// the signs alone; `dirichlet` from the normals, by the Delaunay fan in each point's tangent plane; `jet` and
+/// `regression` from k neighbours.
 ///
 /// \param points   n points; non-finite ones are undefined and nobody's neighbour.
 /// \param normals  n vectors of any positive length, or empty to estimate them.
 /// \throw std::invalid_argument: k < 3 (5 for jets), a degree outside 1…4 (2…4 for the estimator `jet`), more than 2³¹
 /// points, a number of
 ///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
-/// Time O(n k log k) for points on surfaces; memory about 85 bytes a point beyond the input, the result included;
-/// 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
-/// Source: the paper; fan by inversion, eq. (7) of docs/method.md; jets and regression by eq. (13) to (15).
+/// Time O(n) fits for `automatic`, more where there is noise; else O(n k log k) for points on surfaces, memory about 85
+/// bytes a point beyond the input, the result included; 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
+/// Source: the paper; fan by inversion, eq. (7) of docs/method.md; jets and regression by eq. (13) to (15), `automatic`
+/// by (16) to (18).
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
 
 }  // namespace gaussmap

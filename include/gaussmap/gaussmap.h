@@ -1,4 +1,5 @@
-// gaussmap: total curvature (k1² + k2²) of triangle meshes and point clouds from the variation of their normals.
+// gaussmap: total curvature (k1² + k2²) of triangle meshes from the variation of their normals, and of point clouds
+// from fitted surfaces or normals.
 //
 // The tour:
 //   types.h      views in (Points, Triangles), how a call may run (Execution)

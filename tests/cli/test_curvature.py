@@ -95,7 +95,8 @@ def test_report_of_a_mesh(gaussmap):
 
 def test_report_of_a_cloud(gaussmap):
     gaussmap("shape", "sphere", "--subdivisions", 4, "-o", "s.ply")
-    report = gaussmap("curvature", "s.ply", "--as", "cloud", "--normals", "estimate", "--json", "--threads", 2).json
+    options = ["--as", "cloud", "--normals", "estimate", "--estimator", "dirichlet", "--json", "--threads", 2]
+    report = gaussmap("curvature", "s.ply", *options).json
     assert list(report) == KEYS_CLOUD
     assert report["kind"] == "cloud" and report["normals"] == "jet 4"
     assert (report["k"], report["orient"], report["threads"], report["estimator"]) == (20, "local", 2, "dirichlet")
@@ -118,7 +119,8 @@ def test_report_of_a_cloud(gaussmap):
 @pytest.mark.parametrize("orient", ["local", "mst", "none"])
 def test_normals_of_a_cloud(gaussmap, options, normals, orient):
     gaussmap("shape", "sphere", "--subdivisions", 4, "--jitter", 0.2, "--seed", 1, "-o", "s.ply")
-    report = gaussmap("curvature", "s.ply", "--as", "cloud", "--orient", orient, "--json", *options).json
+    options = ["--as", "cloud", "--estimator", "dirichlet", "--orient", orient, "--json", *options]
+    report = gaussmap("curvature", "s.ply", *options).json
     assert report["normals"] == normals
     assert report["orient"] == (None if normals == "file" else orient)
     if orient != "none" or normals == "file":
@@ -217,6 +219,35 @@ def test_colours_grow_lighter_with_density(gaussmap, tmp_path):
     assert by_density[-1] > by_density[0] + 80
 
 
+@pytest.mark.parametrize(
+    "options, estimator, normals",
+    [
+        ([], "auto", "fitted"),
+        (["--normals", "auto"], "auto", "fitted"),
+        (["--normals", "estimate"], "auto", "fitted"),
+        (["--normals", "file", "--estimator", "auto"], "auto", "fitted"),
+        (["--normals", "jet", "--k", "9", "--estimator", "auto"], "auto", "fitted"),
+        (["--normals", "file"], "dirichlet", "file"),
+        (["--normals", "pca"], "dirichlet", "pca"),
+        (["--normals", "wpca"], "dirichlet", "wpca"),
+        (["--normals", "jet"], "dirichlet", "jet 2"),
+        (["--k", "20"], "dirichlet", "file"),
+        (["--normals", "estimate", "--k", "12"], "dirichlet", "jet 4"),
+        (["--normals", "estimate", "--degree", "3"], "dirichlet", "jet 3"),
+        (["--normals", "estimate", "--orient", "local"], "dirichlet", "jet 4"),
+        (["--estimator", "dirichlet"], "dirichlet", "file"),
+    ],
+)
+def test_what_a_cloud_is_measured_with(gaussmap, options, estimator, normals):
+    gaussmap("shape", "torus", "--jitter", 0.2, "--seed", 1, "-o", "t.ply")
+    report = gaussmap("curvature", "t.ply", "--as", "cloud", "--json", *options).json
+    assert (report["estimator"], report["normals"]) == (estimator, normals)
+    fans = estimator != "auto"
+    assert ("chosen" in report, report["k"] is None, report["boundary"] is None) == (not fans, not fans, not fans)
+    assert (report["orient"] is None) == (not fans or normals == "file")
+    assert gaussmap("curvature", "t.ply", "--json").json["estimator"] == "dirichlet", "meshes"
+
+
 @pytest.mark.parametrize("kind", ["mesh", "cloud"])
 @pytest.mark.parametrize("orient", ["local", "mst"])
 def test_threads_change_no_byte(gaussmap, tmp_path, kind, orient):
@@ -275,6 +306,12 @@ def test_unused_options_are_told(gaussmap):
     assert notes == ["--orient is not used: the normals come from the file"]
     options = ["--as", "cloud", "--normals", "pca", "--degree", 2, "--json"]
     assert gaussmap("curvature", "t.ply", *options).json["notes"] == ["--degree is not used: a plane is fitted"]
+    options = ["--as", "cloud", "--estimator", "auto", "--k", 9, "--orient", "mst", "--degree", 2, "--json"]
+    names = ["--k", "--orient", "--degree"]
+    notes = gaussmap("curvature", "t.ply", "--normals", "pca", *options).json["notes"]
+    assert notes == [f"{o} is not used: --estimator auto chooses for itself" for o in [*names, "--normals"]]
+    notes = gaussmap("curvature", "t.ply", "--normals", "file", *options).json["notes"]
+    assert notes[3:] == ["--normals file tells the signs alone: --estimator auto fits its own"]
 
 
 def test_a_cut_surface_is_told(gaussmap, data):

@@ -188,5 +188,5 @@ def test_normals_that_are_undefined_are_counted(gaussmap, tmp_path):
 def test_normals_feed_curvature(gaussmap):
     gaussmap("shape", "sphere", "--subdivisions", 4, "-o", "s.ply")
     gaussmap("normals", "s.ply", "--as", "cloud", "-o", "n.ply")
-    report = gaussmap("curvature", "n.ply", "--as", "cloud", "--json").json
+    report = gaussmap("curvature", "n.ply", "--as", "cloud", "--normals", "file", "--json").json
     assert report["normals"] == "file" and report["density"]["mean"] == pytest.approx(2, rel=0.01)

@@ -20,7 +20,7 @@ def rows(element, names):
     return zip(*(element[name] for name in names))
 
 
-@pytest.mark.parametrize("options", [[], ["--estimator", "corrected"], ["--as", "cloud"]])
+@pytest.mark.parametrize("options", [[], ["--estimator", "corrected"], ["--as", "cloud"], ["--as", "cloud", "--k", "20"]])
 def test_a_torus(gaussmap, tmp_path, options):
     gaussmap("shape", "torus", "--major", 1, "--minor", 0.5, "--grid", "72x48", "-o", "t.ply")
     report = gaussmap("curvature", "t.ply", "--tensor", "-o", "o.ply", "--json", *options).json
@@ -105,7 +105,7 @@ def test_what_the_input_had_is_kept(gaussmap, tmp_path):
 def test_clouds_as_text_and_pcd(gaussmap, tmp_path):
     gaussmap("shape", "sphere", "--radius", 2, "-o", "s.ply")
     for name in ("o.xyz", "o.pcd"):
-        gaussmap("curvature", "s.ply", "--as", "cloud", "--tensor", "-o", name)
+        gaussmap("curvature", "s.ply", "--as", "cloud", "--estimator", "dirichlet", "--tensor", "-o", name)
         gaussmap("convert", name, "-o", "back.ply")
         vertex = ply.read(tmp_path / "back.ply")[0]["vertex"]
         assert set(VERTEX) <= set(vertex)
@@ -116,10 +116,20 @@ def test_clouds_as_text_and_pcd(gaussmap, tmp_path):
 def test_signs_follow_the_normals(gaussmap, tmp_path):
     gaussmap("shape", "sphere", "--subdivisions", 4, "--jitter", 0.2, "--seed", 1, "-o", "s.ply")
     options = ["--as", "cloud", "--normals", "estimate", "--tensor", "-o", "o.ply", "--json"]
-    note = (
+    words = (
         "each point has its own normal's side, so the signs of k1, k2, mean and shape_index need not agree from point "
-        "to point; --orient mst makes them"
+        "to point; "
     )
+    automatic = words + "normals in the file make them, and gaussmap normals writes such"
+    assert automatic in gaussmap("curvature", "s.ply", *options).json["notes"]
+    mean = ply.read(tmp_path / "o.ply")[0]["vertex"]["mean"]
+    assert min(mean) < -0.9 and max(mean) > 0.9
+    report = gaussmap("curvature", "s.ply", "--as", "cloud", "--tensor", "-o", "o.ply", "--json").json
+    assert automatic not in report["notes"] and report["estimator"] == "auto"
+    assert min(ply.read(tmp_path / "o.ply")[0]["vertex"]["mean"]) > 0.9, "outward as the normals of the file"
+
+    options += ["--estimator", "dirichlet"]
+    note = words + "--orient mst makes them"
     assert note in gaussmap("curvature", "s.ply", *options).json["notes"]
     mean = ply.read(tmp_path / "o.ply")[0]["vertex"]["mean"]
     assert min(mean) < -0.9 and max(mean) > 0.9
@@ -139,3 +149,53 @@ def test_no_keys_that_were_not_asked_for(gaussmap):
     gaussmap("shape", "sphere", "-o", "s.ply")
     report = gaussmap("curvature", "s.ply", "--json").json
     assert not {"tensor", "confidence", "chosen"} & set(report)
+    report = gaussmap("curvature", "s.ply", "--as", "cloud", "--json").json
+    assert not {"tensor", "confidence"} & set(report) and report["chosen"] == {"quartic 24": report["vertices"]}
+
+
+NAMES = (
+    {"none", "quadric 9", "quartic 24"}
+    | {f"{family} {int(24 * 1.5**rung)}" for rung in range(13) for family in ("quadric", "half mean quadric")}
+    | {f"{family} {int(24 * 1.5**rung)}" for rung in range(13) for family in ("mean quadric", "quartic free")}
+)
+
+
+@pytest.mark.parametrize("noise", [0, 0.1])
+def test_auto_tells_its_errors_and_choices(gaussmap, tmp_path, noise):
+    gaussmap("shape", "torus", "--grid", "72x36", "--jitter", 0.2, "--noise", noise, "--seed", 1, "-o", "t.ply")
+    options = ["--as", "cloud", "--estimator", "auto", "--confidence", "--choice", "--truth", "exact_density"]
+    report = gaussmap("curvature", "t.ply", *options, "-o", "o.ply", "--json").json
+    elements, types = ply.read(tmp_path / "o.ply")
+    vertex = elements["vertex"]
+    assert [types["vertex", name] for name in ("scalar_total_curvature", "density_error", "choice")] == ["f", "f", "B"]
+    assert vertex["scalar_total_curvature"] == vertex["quality"]
+    assert all(error > 0 for error in vertex["density_error"]) and "kappa" not in vertex
+    assert report["estimator"] == "auto" and report["normals"] == "fitted"
+    assert (report["k"], report["orient"], report["boundary"]) == (None, None, None)
+    counts = sorted(vertex["choice"].count(choice) for choice in set(vertex["choice"]))
+    assert sorted(report["chosen"].values()) == counts and sum(counts) == report["vertices"]
+    assert set(report["chosen"]) <= NAMES
+    assert (set(report["chosen"]) == {"quartic 24"}) == (noise == 0)
+    assert 0.9 <= report["confidence"]["truth_within_two_errors"] <= 1
+    relative = statistics.median(e / d for e, d in zip(vertex["density_error"], vertex["quality"]))
+    assert report["confidence"]["median_relative_error"] == pytest.approx(relative, rel=1e-5)
+    assert report["truth"]["relative_rmse"] < (0.06 if noise else 0.002)
+
+    words = gaussmap("curvature", "t.ply", *options).stderr
+    line = " ".join(words.partition("  chosen ")[2].partition("  density ")[0].split())
+    most = sorted(report["chosen"].values(), reverse=True)
+    told = [int(part.split(": ")[1].replace(",", "")) for part in line.split("; ")]
+    assert told[:3] == most[:3] and sum(told) == report["vertices"]
+    assert "others: " in line if len(most) > 3 else "others" not in line
+    assert "nan" not in words.lower() and "kappa" not in words and "boundary" not in words
+
+
+@pytest.mark.parametrize("noise", [0, 0.1])
+def test_auto_is_the_same_for_any_number_of_threads(gaussmap, tmp_path, noise):
+    gaussmap("shape", "torus", "--grid", "60x30", "--jitter", 0.2, "--noise", noise, "--seed", 2, "-o", "t.ply")
+    options = ["--as", "cloud", "--confidence", "--choice", "--tensor"]
+    written = set()
+    for threads in (1, 2, 7):
+        assert gaussmap("curvature", "t.ply", *options, "-o", "o.ply", "--threads", threads).code == 0
+        written.add((tmp_path / "o.ply").read_bytes())
+    assert len(written) == 1

@@ -18,6 +18,7 @@ Measured run_on(const char* file, bool given) {
     const Points points(run.cloud.vertices);
     EXPECT_EQ(run.cloud.normals.empty(), !given) << file;
     CloudCurvatureOptions options;
+    options.estimator = Estimator::dirichlet;
     options.method = CloudNormals::pca;
     run.result = cloud_curvature(points, given ? Points(run.cloud.normals) : Points(), options);
     std::size_t bad = 0, finite = 0;

@@ -29,6 +29,7 @@ PrincipalCurvatures of_vertices(const Surface& s, bool exact_normals = true) {
 
 PrincipalCurvatures of_cloud(const Array& points, const Array& normals, int threads = 0) {
     CloudCurvatureOptions options;
+    options.estimator = Estimator::dirichlet;
     options.tensor = true;
     options.run.threads = threads;
     return cloud_curvature(points, normals, options).tensor;
@@ -84,8 +85,12 @@ TEST(Tensor, IsEmptyUnlessAskedFor) {
     const MeshCurvature mesh = mesh_curvature(s.vertices, s.faces);
     EXPECT_TRUE(mesh.vertex_tensor.k1.empty() && mesh.face_tensor.k1.empty() && mesh.vertex_tensor.direction.empty());
     EXPECT_TRUE(mesh.error.empty() && mesh.choice.empty());
-    const CloudCurvature cloud = cloud_curvature(s.vertices);
-    EXPECT_TRUE(cloud.tensor.k1.empty() && cloud.tensor.direction.empty() && cloud.error.empty());
+    for (const Estimator estimator : {Estimator::automatic, Estimator::dirichlet}) {
+        CloudCurvatureOptions options;
+        options.estimator = estimator;
+        const CloudCurvature cloud = cloud_curvature(s.vertices, {}, options);
+        EXPECT_TRUE(cloud.tensor.k1.empty() && cloud.tensor.direction.empty() && cloud.error.empty());
+    }
     EXPECT_TRUE(support::same_bits(of_mesh(s, {}).density, mesh.density));
 }
 
@@ -315,6 +320,7 @@ TEST(Tensor, CopiesOfAPointShareItsResult) {
 TEST(Tensor, EstimatedNormalsOfACloudGiveSignsOncePropagated) {
     const support::Cloud torus = support::torus_cloud(1, 0.5, 0.05, 8);
     CloudCurvatureOptions options;
+    options.estimator = Estimator::dirichlet;
     options.tensor = true;
     options.orientation = Orientation::mst;
     const PrincipalCurvatures signs = cloud_curvature(torus.points, {}, options).tensor;
@@ -375,7 +381,17 @@ TEST(Estimators, HaveNamesAndSayWhatTheyLack) {
     EXPECT_STREQ(estimator_name(Estimator::automatic), "auto");
     EXPECT_STREQ(estimator_name(Estimator::corrected), "corrected");
     EXPECT_STREQ(choice_name(0), "none");
-    EXPECT_EQ(support::refusal([] { choice_name(255); }), "choice = 255 is outside [0, 7)");
+    EXPECT_STREQ(choice_name(1), "quadric 9");
+    EXPECT_STREQ(choice_name(2), "quartic 24");
+    EXPECT_STREQ(choice_name(3), "corrected");
+    EXPECT_STREQ(choice_name(16), "quadric 24");
+    EXPECT_STREQ(choice_name(17), "half mean quadric 24");
+    EXPECT_STREQ(choice_name(18), "mean quadric 24");
+    EXPECT_STREQ(choice_name(19), "quartic free 24");
+    EXPECT_STREQ(choice_name(22), "mean quadric 36");
+    EXPECT_STREQ(choice_name(27), "quartic free 54");
+    EXPECT_EQ(support::refusal([] { choice_name(4); }), "choice = 4 is never written");
+    EXPECT_EQ(support::refusal([] { choice_name(255); }), "choice = 255 is never written");
     const Surface s = sphere(1);
     MeshCurvatureOptions mesh;
     mesh.confidence = true;
