@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "check.h"
+#include "eigen3.h"
+#include "shape_tensor.h"
 #include "vec.h"
 
 namespace gaussmap {
@@ -18,6 +20,29 @@ void for_edges(Points vertices, Triangles faces, Body&& body) {
         body(a, b), body(b, a), body(b, c), body(c, b), body(c, a), body(a, c);
     }
 }
+
+/// The squared length in which the rings about a vertex are round. On grids of unlike spacings, the nearest in space
+/// lie on one line or two, and determine nothing; the rings do.
+class RingMetric {
+  public:
+    /// \param moments  sum of d dᵀ over the rings.
+    explicit RingMetric(const Symmetric3& moments) {
+        const Eigen3 axes = eigen(moments);
+        // Across the surface as along the shorter of its axes.
+        const double least = std::max(axes.values[1], 1e-6 * axes.values[2]);
+        axis_ = axes.vectors[2];
+        along_ = least > 0 ? least / axes.values[2] - 1 : 0;
+    }
+
+    double operator()(Vec3 d) const {
+        const double t = dot(axis_, d);
+        return squared(d) + along_ * t * t;
+    }
+
+  private:
+    Vec3 axis_;
+    double along_;
+};
 
 }  // namespace
 
@@ -75,6 +100,7 @@ void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* r
     const auto wanted = static_cast<std::size_t>(k), enough = wanted + wanted / 2, hub = 4 * wanted;
     room.begin(8 * wanted);
     room.enter(static_cast<std::int32_t>(vertex));
+    std::size_t inner = 0, rings = 0;  // vertices on the two first rings
     for (std::size_t ring = 0; ring < room.met_.size() && room.met_.size() <= enough;) {
         for (const std::size_t end = room.met_.size(); ring < end; ++ring) {
             const auto v = static_cast<std::size_t>(room.met_[ring]);
@@ -82,12 +108,19 @@ void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* r
             if (v != vertex && degree(v) > hub) continue;
             for (std::size_t j = offset_[v]; j < offset_[v + 1]; ++j) room.enter(neighbor_[j]);
         }
+        if (++rings <= 2) inner = room.met_.size();
     }
     const Vec3 here = load(vertices_[vertex]);
+    Symmetric3 moments;
+    for (std::size_t j = 0; j < inner; ++j) {
+        const Vec3 d = load(vertices_[room.met_[j]]) - here;
+        add_product(moments, 1, d, d);
+    }
+    const RingMetric metric(moments);
     room.nearest_.clear();
     for (const std::int32_t v : room.met_) {
-        const double distance = squared(load(vertices_[v]) - here);
-        if (distance > 0) room.nearest_.push_back({distance, v});
+        const Vec3 d = load(vertices_[v]) - here;
+        if (squared(d) > 0) room.nearest_.push_back({metric(d), v});
     }
     const auto nearer = [](const Room::Met& a, const Room::Met& b) {
         return a.squared < b.squared || (a.squared == b.squared && a.index < b.index);

@@ -35,8 +35,9 @@ class VertexRings {
     };
 
     /// The k nearest of at least 3/2 k vertices met on whole rings about the vertex, nearest first, ties by index, −1
-    /// where there are fewer. Vertices at its very position are passed through and left out.
-    /// Time O(k log k) where degrees are bounded; rings do not grow through vertices of more than 4 k neighbours.
+    /// where there are fewer; lengths are such that the two first rings are round. Vertices at its very position are
+    /// passed through and left out. Time O(k log k) where degrees are bounded; rings do not grow through vertices of
+    /// more than 4 k neighbours.
     void nearest(std::size_t vertex, int k, Room& room, std::int32_t* row) const;
 
   private:
