@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "eigen3.h"
+#include "element_graph.h"
 #include "gaussmap/types.h"
 #include "vec.h"
 
@@ -30,6 +31,8 @@ struct AutomaticCurvature {
     std::vector<Vec3> normal;          ///< unit, of arbitrary sign; NaN where undefined
     std::vector<Symmetric3> tensor;    ///< the shape operator, signed by the normal
     std::vector<std::uint8_t> choice;  ///< as `choice_name` tells
+    ElementGraph graph;                ///< of the elements, for averages over the surface
+    double unit = 1;                   ///< about an edge's squared length, a power of 4
     std::size_t lowered = 0;           ///< elements with too few neighbours for a quartic
 };
 

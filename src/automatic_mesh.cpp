@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "automatic.h"
+#include "one_ring.h"
 #include "parallel.h"
 #include "shape_operator.h"
 #include "shape_tensor.h"
@@ -66,6 +67,8 @@ void automatic_mesh(Points vertices, Triangles faces, const MeshCurvatureOptions
     if (const double size = diagonal(vertices, rings); std::isfinite(size) && size > 0)
         found = automatic_curvature(elements_of(vertices, rings), size, options.run);
     take_sides(found, result);
+    if (!found.density.empty())
+        take_one_rings(vertices, faces, {result.normals.data(), count}, found, {options.run.threads, {}});
     result.density = std::move(found.density);
     result.density.resize(count, nan);
     result.choice = std::move(found.choice);
