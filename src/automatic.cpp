@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "element_graph.h"
 #include "first_look.h"
@@ -170,6 +171,8 @@ AutomaticCurvature automatic_curvature(const Elements& elements, double size, co
     if (run.progress && !run.progress(1)) throw Cancelled();
 
     const double scale2 = scale * scale;
+    result.graph = std::move(graph);
+    result.unit = 1 / scale2;
     for (std::size_t i = 0; i < count; ++i) {
         result.density[i] *= scale2;
         result.error[i] *= scale2;

@@ -70,13 +70,19 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     // Nothing tells the remainder of a quadric alone: take it for as large as the value.
     look.quadric = {jet.tensor, squared_norm(jet.tensor), squared_norm(jet.tensor)};
 
-    const int look_count = std::min(count, look_neighbors);
+    int look_count = std::min(count, look_neighbors);
     Moments<4> quartic;
     HeightField<4> field;
     for (int turn = 0; turn < 2; ++turn) {
         const Frame frame =
             collect(quartic, neighbors.data(), look_count, false, view, Chart::chord, RemainderWeights());
-        if (!quartic.solve(false, field)) return look;
+        if (!quartic.solve(false, field)) {
+            // On the border of a grid the nearest lie on four lines, too few for a quartic, and more on five.
+            if (turn > 0 || look_count == count) return look;
+            look_count = count;
+            --turn;
+            continue;
+        }
         jet = surface_jet(field.c, frame, view.size);
         if (turn == 0) view.normal = jet.normal;
     }
@@ -106,8 +112,7 @@ FirstLook first_look(const std::vector<Vec3>& neighbors, int count) {
     look.quadric.change = look.quadric.density - chord;
     look.variance = density_variance(equal) / std::pow(view.size, 6);
     look.trace = shape_variance(equal) / std::pow(view.size, 4);
-    look.residual = residual;
-    look.wide_residual = wide;
+    if (look_count < count) look.residual = residual, look.wide_residual = wide;
     return look;
 }
 

@@ -120,7 +120,7 @@ class Moments {
 
   private:
     /// Of unit-diagonal normal equations: a monomial that the others match to its root is not determined.
-    static constexpr double rank_tolerance = 1e-10;
+    static constexpr double rank_tolerance = 1e-6;
 
     template <int Lower, int N>
     static void second_derivatives(const double (&lower)[N][N], const double* scale, int skip, int n,

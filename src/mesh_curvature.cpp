@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include "automatic_mesh.h"
 #include "check.h"
 #include "clock.h"
 #include "corrected_curvature.h"
@@ -36,10 +37,11 @@ void count_faces(MeshCurvature& result) {
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, const MeshCurvatureOptions& options) {
     check_estimator(options.estimator, Input::mesh, options.confidence);
     if (!normals.empty()) check_count("normals", normals.count, vertices.count, "vertices");
+    const bool fits = options.estimator == Estimator::automatic;
     MeshCurvature result;
     auto start = Clock::now();
     if (normals.empty()) {
-        result.normals = mesh_normals(vertices, faces, options.weights, part_of(options.run, 0, 0.5));
+        result.normals = mesh_normals(vertices, faces, options.weights, part_of(options.run, 0, fits ? 0.05 : 0.5));
     } else {
         result.normals.assign(normals.xyz, normals.xyz + 3 * normals.count);
         normalize(result.normals, options.run);
@@ -47,6 +49,11 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     result.seconds_normals = seconds_since(start);
 
     start = Clock::now();
+    if (fits) {
+        MeshCurvatureOptions fitting = options;
+        fitting.run = part_of(options.run, 0.05, 0.5);
+        automatic_mesh(vertices, faces, fitting, result);
+    }
     const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);
     result.face_density.resize(faces.count);
@@ -55,13 +62,14 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     count_faces(result);
     if (options.estimator == Estimator::corrected) {
         result.density = corrected_density(vertices, faces, result.normals, {options.run.threads, {}});
-    } else {
+    } else if (!fits) {
         divide_sums(sums.get(), vertices.count, options.run);
         result.density.resize(vertices.count);
         for (std::size_t v = 0; v < vertices.count; ++v) result.density[v] = sums[2 * v];
     }
     if (options.tensor) {
-        result.vertex_tensor = vertex_tensor(vertices, faces, result.normals, part_of(options.run, 0.7, 0.9));
+        if (!fits)
+            result.vertex_tensor = vertex_tensor(vertices, faces, result.normals, part_of(options.run, 0.7, 0.9));
         result.face_tensor = face_tensor(vertices, faces, result.normals, part_of(options.run, 0.9, 1));
     }
     for (const double d : result.density) result.undefined += std::isnan(d);
