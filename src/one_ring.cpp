@@ -10,7 +10,7 @@ namespace gaussmap {
 namespace {
 
 /// Part of the mean square of a smooth difference that a vertex's own may deviate from the mean about it.
-constexpr double roughness = 0.05;
+constexpr double least_rough = 0.05;
 /// Where even the fits' remainders cancel on a grid, the changes that tell their errors come out too small: measured,
 /// up to sixfold.
 constexpr double understated = 36;
@@ -39,7 +39,7 @@ void take_one_rings(Points vertices, Triangles faces, Points unit_normals, Autom
     for (auto* field : {&rough, &difference, &error}) diffuse(*field, found.graph, reach, run);
     for (std::size_t i = 0; i < count; ++i) {
         if (found.choice[i] != clean || !std::isfinite(change[i])) continue;
-        if (!(rough[i] < roughness * difference[i] && difference[i] < understated * error[i])) continue;
+        if (!(rough[i] < least_rough * difference[i] && difference[i] < understated * error[i])) continue;
         found.density[i] = corrected[i];
         found.choice[i] = one_ring_choice;
     }

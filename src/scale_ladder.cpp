@@ -20,7 +20,8 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float never = std::numeric_limits<float>::infinity();
-constexpr double growth = 1.5;  ///< of the neighbours from rung to rung
+constexpr int most_samples = 96;  ///< of an average
+constexpr double growth = 1.5;    ///< of the neighbours from rung to rung
 
 /// What is known of each family. The variances are those of the geometry alone: discs filled evenly, k neighbours
 /// averaged with the kernel 1 − (d/h)².
@@ -40,13 +41,13 @@ using Field = std::vector<float>;
 
 /// What a rung found, an element each; NaN where it was not on the rung. [2]: of the quadric and of the quartic.
 struct Rung {
-    Field size;                   ///< distance of the last neighbour
+    Field size, half_size;        ///< distances of the last neighbour and of the one half way
     Field variance[2], trace[2];  ///< of the density and of the shape operator, for heights of unit variance
     Field residual[2];            ///< variance of the heights about the fit
     Field density[families];      ///< |S|², its bias by noise included
     std::vector<Symmetric3> tensor[families];
 
-    explicit Rung(std::size_t count) : size(count, nan) {
+    explicit Rung(std::size_t count) : size(count, nan), half_size(size) {
         for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = size;
         for (int f = 0; f < families; ++f) density[f] = size, tensor[f].resize(count);
     }
@@ -63,6 +64,7 @@ class Ladder {
           active_(std::move(active)),
           result_(result),
           view_(elements.count),
+          samples_(elements.count * most_samples),
           noise_(elements.count, nan),
           settled_(elements.count, 0),
           best_(elements.count),
@@ -81,7 +83,7 @@ class Ladder {
         for (int rung = 0; rung < most_rungs && rung_neighbors(rung) < static_cast<int>(elements_.count); ++rung) {
             if (std::find(active_.begin(), active_.end(), 1) == active_.end()) break;
             fit(rung);
-            average(rung);
+            average();
             if (rung > 0) {
                 weigh(rung - 1);
                 let_go();
@@ -95,25 +97,12 @@ class Ladder {
     void fit(int rung);
     void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
                      Moments<4>& quartic);
-    void average(int rung);
+    void sample(std::size_t i, const std::int32_t* row, int k);
+    void average();
     void weigh(int rung);
     void estimate_noise(const Field& residual, const Field& wider);
     void weigh_family(int rung, int family, const Field& residual);
     void let_go();
-
-    /// Call body(element, row of k neighbours) for the active elements.
-    template <class Body>
-    void for_active(int k, Body&& body) {
-        for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t first, std::size_t last) {
-            if (std::find(active_.begin() + static_cast<std::ptrdiff_t>(first),
-                          active_.begin() + static_cast<std::ptrdiff_t>(last),
-                          1) == active_.begin() + static_cast<std::ptrdiff_t>(last))
-                return;
-            std::vector<std::int32_t> rows((last - first) * static_cast<std::size_t>(k));
-            elements_.neighbors(first, last, k, rows.data());
-            body(first, last, rows.data());
-        });
-    }
 
     Vec3 difference(std::size_t from, std::size_t to) const {
         return scale_ * (elements_.position(to) - elements_.position(from));
@@ -126,7 +115,8 @@ class Ladder {
     std::vector<std::uint8_t> active_;
     AutomaticCurvature& result_;
     std::vector<View> view_;
-    Field noise_;  ///< variance of the heights
+    std::vector<std::int32_t> samples_;  ///< `most_samples` of the neighbours of each element, nearest first, −1 beyond
+    Field noise_;                        ///< variance of the heights
     std::vector<std::uint8_t> settled_, dead_[families];
     Field best_, least_[families];  ///< squared errors: of what `result` holds, and of each family's best
     Field bias_[families];          ///< squared, as far as it is sure on the rungs below
@@ -136,19 +126,34 @@ class Ladder {
 void Ladder::fit(int rung) {
     upper_ = Rung(elements_.count);
     const int k = rung_neighbors(rung);
-    for_active(k, [&](std::size_t first, std::size_t last, const std::int32_t* rows) {
+    for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t first, std::size_t last) {
+        const auto begin = active_.begin() + static_cast<std::ptrdiff_t>(first),
+                   end = active_.begin() + static_cast<std::ptrdiff_t>(last);
+        if (std::find(begin, end, 1) == end) return;
+        std::vector<std::int32_t> rows((last - first) * static_cast<std::size_t>(k));
+        elements_.neighbors(first, last, k, rows.data());
         std::vector<Vec3> neighbors(static_cast<std::size_t>(k));
         Moments<2> quadric;
         Moments<4> quartic;
         for (std::size_t i = first; i < last; ++i) {
             if (!active_[i]) continue;
-            const std::int32_t* row = rows + (i - first) * static_cast<std::size_t>(k);
+            const std::int32_t* row = rows.data() + (i - first) * static_cast<std::size_t>(k);
             int count = 0;
             for (; count < k && row[count] >= 0; ++count)
                 neighbors[static_cast<std::size_t>(count)] = difference(i, static_cast<std::size_t>(row[count]));
-            if (count == k) fit_element(i, rung, neighbors, count, quadric, quartic);
+            if (count < k) continue;
+            fit_element(i, rung, neighbors, count, quadric, quartic);
+            upper_.half_size[i] = static_cast<float>(length(neighbors[static_cast<std::size_t>(k / 2 - 1)]));
+            sample(i, row, k);
         }
     });
+}
+
+/// Evenly along the row.
+void Ladder::sample(std::size_t i, const std::int32_t* row, int k) {
+    const int stride = (k + most_samples - 1) / most_samples;
+    std::int32_t* to = samples_.data() + i * most_samples;
+    for (int s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
 }
 
 /// The view is settled on the quadric, which noise sways least.
@@ -183,36 +188,37 @@ void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neigh
     if (quartic.solve(true, full, true)) keep(1, Family::quartic, full);
 }
 
-/// Shape operators of the quadrics, averaged over up to `most_samples` of the nearest k, with the weights 1 − (d/h)².
-void Ladder::average(int rung) {
-    constexpr int most_samples = 128;
-    const int k = rung_neighbors(rung), stride = (k + most_samples - 1) / most_samples;
+/// Shape operators of the quadrics, averaged over the samples within half the neighbours' reach and within all of it,
+/// with the weights 1 − (d/h)².
+void Ladder::average() {
     const auto quadric = static_cast<int>(Family::quadric);
-    for_active(k, [&](std::size_t first, std::size_t last, const std::int32_t* rows) {
-        for (std::size_t i = first; i < last; ++i) {
+    for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
             if (!active_[i] || !std::isfinite(upper_.density[quadric][i])) continue;
-            const std::int32_t* row = rows + (i - first) * static_cast<std::size_t>(k);
-            for (const auto& [family, members] : {std::pair(Family::half_mean, k / 2), std::pair(Family::mean, k)}) {
-                const double reach = squared(difference(i, static_cast<std::size_t>(row[members - 1])));
-                const Vec3 normal = view_[i].normal;
-                Symmetric3 sum = upper_.tensor[quadric][i];
-                double weights = 1;
-                for (int j = 0; j < members; j += stride) {
-                    const auto other = static_cast<std::size_t>(row[j]);
-                    if (!std::isfinite(upper_.density[quadric][other])) continue;
-                    const double weight = 1 - squared(difference(i, other)) / reach;
-                    const double along = dot(view_[other].normal, normal);
-                    // Other sheets and far sides look elsewhere.
-                    if (!(weight > 0) || std::abs(along) < 0.3) continue;
-                    const double sign = along < 0 ? -1 : 1;
-                    add(sum, sign * weight, carried(upper_.tensor[quadric][other], sign * view_[other].normal, normal));
-                    weights += weight;
+            const double reach[2] = {double(upper_.half_size[i]) * upper_.half_size[i],
+                                     double(upper_.size[i]) * upper_.size[i]};
+            const Vec3 normal = view_[i].normal;
+            Symmetric3 sum[2] = {upper_.tensor[quadric][i], upper_.tensor[quadric][i]};
+            double weights[2] = {1, 1};
+            const std::int32_t* row = samples_.data() + i * most_samples;
+            for (int s = 0; s < most_samples && row[s] >= 0; ++s) {
+                const auto other = static_cast<std::size_t>(row[s]);
+                const double along = dot(view_[other].normal, normal), away = squared(difference(i, other));
+                // Other sheets and far sides look elsewhere.
+                if (!std::isfinite(upper_.density[quadric][other]) || std::abs(along) < 0.3) continue;
+                const double sign = along < 0 ? -1 : 1;
+                const Symmetric3 there = carried(upper_.tensor[quadric][other], sign * view_[other].normal, normal);
+                for (int m = 0; m < 2; ++m) {
+                    const double weight = 1 - away / reach[m];
+                    if (weight > 0) add(sum[m], sign * weight, there), weights[m] += weight;
                 }
+            }
+            for (int m = 0; m < 2; ++m) {
+                const auto family = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
                 Symmetric3 mean;
-                add(mean, 1 / weights, sum);
-                const auto f = static_cast<int>(family);
-                upper_.tensor[f][i] = mean;
-                upper_.density[f][i] = static_cast<float>(squared_norm(mean));
+                add(mean, 1 / weights[m], sum[m]);
+                upper_.tensor[family][i] = mean;
+                upper_.density[family][i] = static_cast<float>(squared_norm(mean));
             }
         }
     });

@@ -351,9 +351,13 @@ TEST(CloudAuto, FewPoints) {
         const Array points(sphere.points.begin(), sphere.points.begin() + static_cast<std::ptrdiff_t>(3 * n));
         const CloudCurvature result = measure(points);
         expect_sound(result, n);
-        if (n < 6) EXPECT_EQ(result.undefined, n) << "a quadric takes five neighbours";
-        if (n > 25) EXPECT_EQ(result.undefined, 0u);
-        if (n >= 6 && n <= 14) EXPECT_EQ(result.lowered + result.undefined, n);
+        if (n < 6) {
+            EXPECT_EQ(result.undefined, n) << "a quadric takes five neighbours";
+        } else if (n <= 14) {
+            EXPECT_EQ(result.lowered + result.undefined, n);
+        } else if (n > 25) {
+            EXPECT_EQ(result.undefined, 0u);
+        }
         expect_sound(measure(support::lattice_cloud(static_cast<int>(n) / 5, 1).points), n / 5 * (n / 5));
     }
 }
