@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "vec.h"
 
@@ -21,7 +22,8 @@ struct HeightField {
     std::array<double, monomials(Degree)> c;
     double residual;  ///< weighted sum of the squared residuals
     int free;         ///< data less unknowns
-    /// Covariance of the second derivatives h_uu, h_uv, h_vv at the origin for data of unit variance; where asked for.
+    /// Covariance of the second derivatives h_uu, h_uv, h_vv at the origin for data of unit variance; NaN unless asked
+    /// for.
     double covariance[3][3];
 };
 
@@ -114,7 +116,10 @@ class Moments {
         field.c[0] = 0;
         for (int i = 0; i < n; ++i) field.c[i + skip] = x[i] * scale[i];
         field.residual = std::max(0.0, sum_[terms][terms] - explained);
-        if (covariance) second_derivatives(lower, scale, skip, n, field);
+        if (covariance)
+            second_derivatives(lower, scale, skip, n, field);
+        else
+            std::fill_n(&field.covariance[0][0], 9, std::numeric_limits<double>::quiet_NaN());
         return true;
     }
 

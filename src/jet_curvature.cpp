@@ -49,7 +49,7 @@ bool fit(const std::vector<Vec3>& offsets, View view, bool error, Found& found) 
     for (int turn = 0; turn < 2; ++turn) {
         if (turn > 0) view.normal = found.jet.normal;
         frame = collect(moments, offsets.data(), static_cast<int>(offsets.size()), false, view, Chart::monge);
-        if (!moments.solve(false, field)) return false;
+        if (!moments.solve(false, field, true)) return false;
         found.jet = surface_jet(field.c, frame, view.size);
     }
     if (error) found.error = standard_error(field, offsets, view, frame) / (view.size * view.size);
