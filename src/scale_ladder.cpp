@@ -100,7 +100,7 @@ class Ladder {
     void sample(std::size_t i, const std::int32_t* row, int k);
     void average();
     void weigh(int rung);
-    void estimate_noise(const Field& residual, const Field& wider);
+    void estimate_noise(int rung, const Field& residual, const Field& wider);
     void weigh_family(int rung, int family, const Field& residual);
     void let_go();
 
@@ -156,20 +156,37 @@ void Ladder::sample(std::size_t i, const std::int32_t* row, int k) {
     for (int s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
 }
 
-/// The view is settled on the quadric, which noise sways least.
+/// Settle the view on a quadric, which noise sways least; what it left before the last turn, infinite where nothing is
+/// determined.
+double settle_on_quadric(Moments<2>& moments, const std::vector<Vec3>& neighbors, int count, int turns, View& view) {
+    double residual = std::numeric_limits<double>::infinity();
+    for (; turns > 0 && finite(view.normal); --turns) {
+        HeightField<2> field;
+        const Frame frame = collect(moments, neighbors.data(), count, true, view, Chart::chord);
+        if (!moments.solve(true, field)) break;
+        residual = field.residual;
+        settle(view, frame, field.c);
+    }
+    return finite(view.normal) ? residual : std::numeric_limits<double>::infinity();
+}
+
+/// The view from the rung below, or while windows are small a fresh one, whichever leaves less: at corners of a noisy
+/// border a first view may be tilted beyond recovery.
 void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
                          Moments<4>& quartic) {
+    constexpr int rungs_of_fresh_views = 6;
     View& view = view_[i];
-    if (rung == 0) view = {principal_normal(neighbors, count), {}, 1};
     view.size = length(neighbors[static_cast<std::size_t>(count) - 1]);
-    if (!finite(view.normal) || !(view.size > 0)) return;
-    HeightField<2> curved;
-    for (int turn = rung == 0 ? 2 : 1; turn > 0; --turn) {
-        const Frame frame = collect(quadric, neighbors.data(), count, true, view, Chart::chord);
-        if (!quadric.solve(true, curved)) return;
-        settle(view, frame, curved.c);
-        if (!finite(view.normal)) return;
+    if (!(view.size > 0)) return;
+    double residual = std::numeric_limits<double>::infinity();
+    if (rung > 0) residual = settle_on_quadric(quadric, neighbors, count, 1, view);
+    if (rung < rungs_of_fresh_views) {
+        View fresh = {principal_normal(neighbors, count), {}, view.size};
+        const double left = settle_on_quadric(quadric, neighbors, count, 2, fresh);
+        if (left < residual) view = fresh, residual = left;
     }
+    if (!std::isfinite(residual)) return;
+    HeightField<2> curved;
     const Frame frame = collect(quartic, neighbors.data(), count, true, view, Chart::chord);
     HeightField<4> full;
     if (!quartic.solve(true, curved, true)) return;
@@ -226,12 +243,14 @@ void Ladder::average() {
 
 constexpr int reach_of_errors = 30, reach_of_variances = 15;  ///< steps of diffusion
 
-/// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told.
-void Ladder::estimate_noise(const Field& residual, const Field& wider) {
+/// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
+/// borders, where windows are half discs, not on the first rungs.
+void Ladder::estimate_noise(int rung, const Field& residual, const Field& wider) {
+    constexpr int first_to_tell = 3;
     for (std::size_t i = 0; i < elements_.count; ++i) {
         if (settled_[i] || !std::isfinite(residual[i]) || !std::isfinite(wider[i])) continue;
         noise_[i] = static_cast<float>(noise_variance(residual[i], wider[i]));
-        settled_[i] = lower_.size[i] * lower_.size[i] > 42 * residual[i];
+        settled_[i] = rung >= first_to_tell && lower_.size[i] * lower_.size[i] > 42 * residual[i];
     }
 }
 
@@ -257,17 +276,20 @@ void Ladder::weigh_family(int rung, int family, const Field& residual) {
     diffuse(change, graph_, reach_of_errors, run_);
     for (std::size_t i = 0; i < count; ++i) {
         if (!active_[i] || !std::isfinite(lower_.density[family][i])) continue;
-        // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above.
-        const bool misfit =
-            residual[i] > 2.0f * noise_[i] && lower_.size[i] * lower_.size[i] > 20 * noise_[i] && rung > 0;
-        dead_[family][i] |= misfit ? 1 : 0;
-        if (dead_[family][i]) continue;
+        // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
+        // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
+        const bool misfit = rung > 0 && residual[i] > 2 * noise_[i] && lower_.size[i] * lower_.size[i] > 20 * noise_[i];
+        if (misfit && settled_[i]) dead_[family][i] = 1;
+        if (misfit || dead_[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
         const double noise = known.change * variance[i], per_change = 1 / (known.bias * known.bias);
         const double bias = std::max<double>(per_change * (change[i] - noise), bias_[family][i]);
         const auto risk = static_cast<float>(variance[i] + std::max(0.0, bias));
         if (!(risk < never)) continue;
-        bias_[family][i] = std::max(bias_[family][i], static_cast<float>(per_change * (change[i] - sure * noise)));
+        // Where noise is as large as the value, its tails are no measure of anything.
+        const double density = lower_.density[family][i];
+        if (variance[i] < 0.1 * density * density)
+            bias_[family][i] = std::max(bias_[family][i], static_cast<float>(per_change * (change[i] - sure * noise)));
         least_[family][i] = std::min(least_[family][i], risk);
         // Far above its own best it will not come back.
         if (risk > 3 * least_[family][i]) dead_[family][i] = 1;
@@ -285,7 +307,7 @@ void Ladder::weigh(int rung) {
     Field residual[2] = {lower_.residual[0], lower_.residual[1]};
     Field wider = upper_.residual[1];
     for (Field* field : {&residual[0], &residual[1], &wider}) diffuse(*field, graph_, reach_of_variances, run_);
-    estimate_noise(residual[1], wider);
+    estimate_noise(rung, residual[1], wider);
     for (int family = 0; family < families; ++family) weigh_family(rung, family, residual[of_quartic(family) ? 1 : 0]);
 }
 
