@@ -39,13 +39,14 @@ constexpr bool of_quartic(int family) {
 
 using Field = std::vector<float>;
 
-/// What a rung found, an element each; NaN where it was not on the rung. [2]: of the quadric and of the quartic.
+/// What a rung found, an element each; NaN where it was not on the rung. Two of a kind: of the quadric and of the
+/// quartic.
 struct Rung {
-    Field size, half_size;        ///< distances of the last neighbour and of the one half way
-    Field variance[2], trace[2];  ///< of the density and of the shape operator, for heights of unit variance
-    Field residual[2];            ///< variance of the heights about the fit
-    Field density[families];      ///< |S|², its bias by noise included
-    std::vector<Symmetric3> tensor[families];
+    Field size, half_size;                 ///< distances of the last neighbour and of the one half way
+    std::array<Field, 2> variance, trace;  ///< of the density and of the shape operator, for heights of unit variance
+    std::array<Field, 2> residual;         ///< variance of the heights about the fit
+    std::array<Field, families> density;   ///< |S|², its bias by noise included
+    std::array<std::vector<Symmetric3>, families> tensor;
 
     explicit Rung(std::size_t count) : size(count, nan), half_size(size) {
         for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = size;
