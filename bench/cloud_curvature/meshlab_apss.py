@@ -1,7 +1,7 @@
 """meshlab_apss.py FILE POINTS K:SCALE …: MeshLab's algebraic point set surfaces (Guennebaud, Gross 2007).
 
 Normals by MeshLab with K neighbours (K = 0: the exact ones of the file), filter scale SCALE, the rest its defaults.
-What MeshLab calls the mean curvature there is k1 + k2 =: s (measured on spheres); density = s² − 2 K, not below 0.
+What MeshLab calls the mean curvature there is k1 + k2 =: s (inferred from an ellipsoid with exact values); density = s² − 2 K, not below 0.
 POINTS: how many of the first points are judged (0: all). Without pymeshlab: no row, and a word on the standard error.
 """
 
