@@ -336,6 +336,8 @@ int rung_neighbors(int rung) {
 
 void climb(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
            AutomaticCurvature& result, const Execution& run) {
+    // A clean cloud needs no room for rungs.
+    if (std::find(active.begin(), active.end(), 1) == active.end()) return;
     Ladder(elements, scale, graph, std::move(active), result, run).climb(run);
 }
 
