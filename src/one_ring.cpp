@@ -25,14 +25,13 @@ void take_one_rings(Points vertices, Triangles faces, Points unit_normals, Autom
     const std::size_t count = found.density.size();
     const std::vector<double> corrected = corrected_density(vertices, faces, unit_normals, run);
     // Relative to the fits: squares of densities have no place among floats.
-    std::vector<float> change(count, nan), mean, difference, rough(count, nan), error(count, nan);
+    std::vector<float> change(count, nan), difference, error(count, nan);
     for (std::size_t i = 0; i < count; ++i)
         if (found.choice[i] == clean) change[i] = static_cast<float>((corrected[i] - found.density[i]) * found.unit);
-    mean = difference = change;
-    diffuse(mean, found.graph, 1, run);
+    std::vector<float> rough = roughness(change, found.graph, run);
+    difference = change;
     for (std::size_t i = 0; i < count; ++i) {
         if (found.choice[i] != clean) continue;
-        rough[i] = (change[i] - mean[i]) * (change[i] - mean[i]);
         difference[i] = change[i] * change[i];
         error[i] = static_cast<float>(std::pow(found.error[i] * found.unit, 2));
     }
