@@ -70,6 +70,18 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
     looks.scatter[i] = static_cast<float>(std::log(look.chord.density + std::numeric_limits<float>::min()));
 }
 
+/// The neighbours of an element, put into a lane; how many there are.
+int gather(const Elements& elements, double scale, std::size_t i, const std::int32_t* row, std::size_t lane,
+           LanePatches& patches) {
+    const Vec3 here = elements.position(i);
+    int count = 0;
+    for (; count < wide_neighbors && row[count] >= 0; ++count) {
+        const Vec3 d = scale * (elements.position(static_cast<std::size_t>(row[count])) - here);
+        patches.d[count][0][lane] = d.x, patches.d[count][1][lane] = d.y, patches.d[count][2][lane] = d.z;
+    }
+    return count;
+}
+
 Looks look_around(const Elements& elements, double scale, ElementGraph& graph, AutomaticCurvature& result,
                   const Execution& run) {
     Looks looks(elements.count);
@@ -77,20 +89,24 @@ Looks look_around(const Elements& elements, double scale, ElementGraph& graph, A
     for_blocks(elements.count, Elements::block, run, [&](std::size_t block, std::size_t first, std::size_t last) {
         std::vector<std::int32_t> rows((last - first) * wide_neighbors);
         elements.neighbors(first, last, wide_neighbors, rows.data());
-        std::vector<Vec3> neighbors(wide_neighbors);
-        for (std::size_t i = first; i < last; ++i) {
-            const std::int32_t* row = rows.data() + (i - first) * wide_neighbors;
-            std::copy(row, row + ElementGraph::degree,
-                      graph.index.begin() + static_cast<std::ptrdiff_t>(i * ElementGraph::degree));
-            const Vec3 here = elements.position(i);
-            int count = 0;
-            for (; count < wide_neighbors && row[count] >= 0; ++count)
-                neighbors[count] = scale * (elements.position(static_cast<std::size_t>(row[count])) - here);
-            const FirstLook look = first_look(neighbors, count);
-            lowered_in[block] += look.lowered && finite(look.normal);
-            result.normal[i] = look.normal;
-            result.choice[i] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : 2);
-            keep(look, i, looks);
+        LanePatches patches;
+        for (std::size_t i = first; i < last; i += fit_lanes) {
+            FirstLook found[fit_lanes];
+            int counts[fit_lanes] = {};
+            const std::size_t end = std::min(i + fit_lanes, last);
+            for (std::size_t j = i; j < end; ++j)
+                counts[j - i] = gather(elements, scale, j, rows.data() + (j - first) * wide_neighbors, j - i, patches);
+            first_look(patches, counts, found);
+            for (std::size_t j = i; j < end; ++j) {
+                const FirstLook& look = found[j - i];
+                const std::int32_t* row = rows.data() + (j - first) * wide_neighbors;
+                std::copy(row, row + ElementGraph::degree,
+                          graph.index.begin() + static_cast<std::ptrdiff_t>(j * ElementGraph::degree));
+                lowered_in[block] += look.lowered && finite(look.normal);
+                result.normal[j] = look.normal;
+                result.choice[j] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : 2);
+                keep(look, j, looks);
+            }
         }
     });
     for (const std::size_t n : lowered_in) result.lowered += n;

@@ -1,91 +1,19 @@
-// Normals of cloud points: the smallest principal direction of the neighbours (Hoppe et al. 1992), and above it the
+// Normals of cloud points: the smallest principal direction of the neighbours (principal_normal.h), and above it the
 // normal of a polynomial height field fitted to them (Cazals and Pouget 2005).
 #include "normal_fit.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
-#include "eigen3.h"
+#include "principal_normal.h"
 
 namespace gaussmap {
 namespace {
 
-/// Neighbours closer to a line than the root of this, relative to their spread, span no plane.
-constexpr double line_tolerance = 1e-13;
 /// A monomial that the others match this closely on the neighbours is not determined by them.
 constexpr double rank_tolerance = 1e-4;
 /// Above this the normal equations, whose condition is that of the fit squared, are as good as reflections.
 constexpr double normal_equations_tolerance = 1e-2;
-
-const Vec3 undefined = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
-                        std::numeric_limits<double>::quiet_NaN()};
-
-constexpr Two one = {1, 1};
-
-/// The weights of the neighbours; the point itself weighs 1.
-struct Even {
-    GAUSSMAP_LANES Four operator()(Four /*squared*/) const { return {one, one}; }
-};
-struct Smooth {
-    double over_h_squared;
-    GAUSSMAP_LANES Four operator()(Four squared) const {
-        const Four rest = Four{one, one} - squared * over_h_squared;
-        return rest * rest;
-    }
-};
-
-/// Second moments of the point and its neighbours about their mean.
-template <class Weight>
-Symmetric3 moments(const Neighborhood& neighborhood, const Weight& weight) {
-    Four w, x, y, z, xx, xy, xz, yy, yz, zz;
-    for (std::size_t j = 0; j < neighborhood.count; j += lanes) {
-        const Four dx = load_four(&neighborhood.x[j]), dy = load_four(&neighborhood.y[j]);
-        const Four dz = load_four(&neighborhood.z[j]), s = weight(dx * dx + dy * dy + dz * dz);
-        const Four wx = s * dx, wy = s * dy, wz = s * dz;
-        w += s, x += wx, y += wy, z += wz;
-        xx += wx * dx, xy += wx * dy, xz += wx * dz;
-        yy += wy * dy, yz += wy * dz, zz += wz * dz;
-    }
-    // What fills the arrays up weighs 1 at the centre, and so does the centre.
-    const double filled = static_cast<double>(padded(neighborhood.count) - neighborhood.count);
-    const double all = total(w) - filled + 1;
-    const Vec3 sum = {total(x), total(y), total(z)}, mean = (1 / all) * sum;
-    return {total(xx) - sum.x * mean.x, total(xy) - sum.x * mean.y, total(xz) - sum.x * mean.z,
-            total(yy) - sum.y * mean.y, total(yz) - sum.y * mean.z, total(zz) - sum.z * mean.z};
-}
-
-/// The same from differences to the mean, which cancel nothing, one after the other.
-template <class Weight>
-Symmetric3 careful_moments(const Neighborhood& neighborhood, const Weight& weight) {
-    const auto weight_of = [&](Vec3 d) { return weight(Four{squared(d) * one, one}).low[0]; };
-    Vec3 mean;
-    double all = 1;
-    for (std::size_t j = 0; j < neighborhood.count; ++j) {
-        const Vec3 d = neighborhood.offset(j);
-        all += weight_of(d);
-        mean = mean + weight_of(d) * d;
-    }
-    mean = 1 / all * mean;
-    Symmetric3 m = {mean.x * mean.x, mean.x * mean.y, mean.x * mean.z,
-                    mean.y * mean.y, mean.y * mean.z, mean.z * mean.z};
-    for (std::size_t j = 0; j < neighborhood.count; ++j) {
-        const double w = weight_of(neighborhood.offset(j));
-        const Vec3 d = neighborhood.offset(j) - mean, wd = w * d;
-        m.xx += wd.x * d.x, m.xy += wd.x * d.y, m.xz += wd.x * d.z;
-        m.yy += wd.y * d.y, m.yz += wd.y * d.z, m.zz += wd.z * d.z;
-    }
-    return m;
-}
-
-template <class Weight>
-Vec3 principal_normal(const Neighborhood& neighborhood, const Weight& weight) {
-    Vec3 normal;
-    if (smallest_eigenvector(moments(neighborhood, weight), normal)) return upward(normal);
-    const Eigen3 principal = eigen(careful_moments(neighborhood, weight));
-    if (!(principal.values[1] > line_tolerance * principal.values[2])) return undefined;
-    return upward(principal.vectors[0]);
-}
 
 /// Powers i, j of the monomial uⁱ vʲ in column c of a jet: u v u² uv v² u³ …
 constexpr std::array<int, 2> powers(int c) {
@@ -113,14 +41,6 @@ struct Sums {
 };
 
 }  // namespace
-
-Vec3 principal_normal(const Neighborhood& neighborhood, bool weighted) {
-    if (!weighted) return principal_normal(neighborhood, Even());
-    double farthest = 0;
-    for (std::size_t j = 0; j < neighborhood.count; ++j) farthest = std::max(farthest, squared(neighborhood.offset(j)));
-    const auto k = static_cast<double>(neighborhood.count);
-    return principal_normal(neighborhood, Smooth{farthest > 0 ? k / (farthest * (k + 1)) : 0});
-}
 
 template <int Degree>
 void Jet<Degree>::fill(const Neighborhood& neighborhood, const Frame& frame) {

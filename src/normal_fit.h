@@ -11,11 +11,6 @@
 
 namespace gaussmap {
 
-/// The smallest principal direction of the point and its neighbours, looking up; NaN where they span no plane.
-/// Every one weighs the same, or `weighted` (1 − (d/h)²)² by its distance d from the point: smooth, and 0 where the
-/// next neighbour of a surface would come, h² = d_k² (k + 1)/k.
-Vec3 principal_normal(const Neighborhood& neighborhood, bool weighted);
-
 /// The normal at the point of h(u, v) = Σ c_ij uⁱ vʲ, 1 ≤ i + j ≤ Degree, fitted to the neighbours over a frame
 /// (docs/method.md, eq. (8)). There is no constant term: the height field passes through the point.
 template <int Degree>
