@@ -29,6 +29,9 @@ constexpr double noise_part = 0.25;
 /// (relative variances, at most 1) are those of a shape too thin for its sampling.
 constexpr double scatter_part = 0.3;
 
+/// Steps of diffusion.
+constexpr int change_reach = 8, noise_reach = 15;
+
 constexpr int fits = 3;  ///< chord, monge, quadric
 
 /// What the first look found, an element each.
@@ -133,14 +136,15 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
     for (const std::size_t n : lowered) result.lowered += n;
 
     const ElementGraph& graph = result.graph;
-    for (auto& change : looks.change) diffuse(change, graph, 8, run);
-    for (auto* field : {&looks.residual, &looks.wide_residual}) diffuse(*field, graph, 15, run);
+    looks.scatter = roughness(looks.scatter, graph, run);
+    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter}, graph, noise_reach, run);
     for (std::size_t i = 0; i < tile.count; ++i) {
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
     }
-    looks.scatter = roughness(looks.scatter, graph, run);
-    for (auto* field : {&looks.expected, &looks.scatter}) diffuse(*field, graph, 15, run);
+    static_assert(change_reach < noise_reach);
+    diffuse({&looks.change[0], &looks.change[1], &looks.change[2], &looks.expected}, graph, change_reach, run);
+    diffuse(looks.expected, graph, noise_reach - change_reach, run);
     return looks;
 }
 
