@@ -38,9 +38,8 @@ struct LaneRange {
 /// Weighted sums of uⁱ vʲ up to twice the degree, of those up to the degree times the height, and of the squared
 /// height. A product of monomials is a monomial, and so has its sum made once.
 struct alignas(32) LaneSums {
-    LaneValues power[monomials(8)];
-    LaneValues height[monomials(4)];
-    LaneValues square;
+    static constexpr int power = 0, height = monomials(8), square = height + monomials(4);
+    LaneValues at[square + 1];
 };
 
 /// What is wanted of a fit.

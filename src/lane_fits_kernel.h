@@ -120,9 +120,9 @@ void collect(const LanePatches& patches, const LaneRange& range, bool fresh, Lan
     for (int lane = 0; lane < fit_lanes; lane += together) {
         Sums<Degree> sums = {};
         if (!fresh) {
-            for (int s = 0; s < sums.powers; ++s) sums.power[s] = load(&to.power[s][lane]);
-            for (int s = 0; s < sums.terms; ++s) sums.height[s] = load(&to.height[s][lane]);
-            sums.square = load(&to.square[lane]);
+            for (int s = 0; s < sums.powers; ++s) sums.power[s] = load(&to.at[to.power + s][lane]);
+            for (int s = 0; s < sums.terms; ++s) sums.height[s] = load(&to.at[to.height + s][lane]);
+            sums.square = load(&to.at[to.square][lane]);
         }
         for (int j = first; j < last; j += 2) {
             const int next = j + 1 < most_fitted ? j + 1 : j;
@@ -131,9 +131,9 @@ void collect(const LanePatches& patches, const LaneRange& range, bool fresh, Lan
             if (next == j) b.weight = Real{};
             add(a, b, sums);
         }
-        for (int s = 0; s < sums.powers; ++s) store(&to.power[s][lane], sums.power[s]);
-        for (int s = 0; s < sums.terms; ++s) store(&to.height[s][lane], sums.height[s]);
-        store(&to.square[lane], sums.square);
+        for (int s = 0; s < sums.powers; ++s) store(&to.at[to.power + s][lane], sums.power[s]);
+        for (int s = 0; s < sums.terms; ++s) store(&to.at[to.height + s][lane], sums.height[s]);
+        store(&to.at[to.square][lane], sums.square);
     }
 }
 
@@ -145,28 +145,32 @@ void collect_as_told(const LanePatches& patches, const LaneRange& range, bool fr
         (range.weighted ? collect<Degree, false, true> : collect<Degree, false, false>)(patches, range, fresh, sums);
 }
 
-/// The monomials that a fit has coefficients of, and where products of two are among the sums.
+/// Where the normal equations are among the sums: row r of column c. The right side is one more row, and what fills up
+/// to whole groups of four is of no use.
 template <int Degree, bool Constant>
-struct Unknowns {
-    static constexpr int skip = Constant ? 0 : 1, count = monomials(Degree) - skip;
-    int product[count][count] = {};
-    constexpr Unknowns() {
-        int degree[count] = {}, power_of_v[count] = {};
+struct NormalEquations {
+    static constexpr int skip = Constant ? 0 : 1, unknowns = monomials(Degree) - skip,
+                         rows = (unknowns + 1 + 3) / 4 * 4;
+    int sum[unknowns][rows] = {};
+    constexpr NormalEquations() {
+        int degree[unknowns] = {}, power_of_v[unknowns] = {};
         for (int d = skip, at = 0; d <= Degree; ++d)
             for (int j = 0; j <= d; ++j, ++at) degree[at] = d, power_of_v[at] = j;
-        for (int r = 0; r < count; ++r)
-            for (int c = 0; c < count; ++c) {
+        for (int c = 0; c < unknowns; ++c) {
+            for (int r = 0; r < unknowns; ++r) {
                 const int d = degree[r] + degree[c];
-                product[r][c] = d * (d + 1) / 2 + power_of_v[r] + power_of_v[c];
+                sum[c][r] = LaneSums::power + d * (d + 1) / 2 + power_of_v[r] + power_of_v[c];
             }
+            sum[c][unknowns] = LaneSums::height + c + skip;
+        }
     }
 };
 
-/// L D Lᵀ of the normal equations, a column at a time, four rows of it at once. The right side is one more row.
+/// L D Lᵀ of the normal equations, a column at a time, four rows of it at once.
 template <int Degree, bool Constant>
 struct Factors {
-    static constexpr Unknowns<Degree, Constant> unknowns = {};
-    static constexpr int n = unknowns.count, rows = (n + 1 + 3) / 4 * 4;
+    static constexpr NormalEquations<Degree, Constant> equations = {};
+    static constexpr int n = equations.unknowns, rows = equations.rows;
     Real low[n][rows], raw[n][rows];  ///< entries [c][r] of L and of L D, r ≥ c / 4 · 4
     Real inverse[n];                  ///< of D
     Mask determined = Mask{} - 1;
@@ -175,37 +179,28 @@ struct Factors {
         // Of the diagonal: a monomial that the others match to the root of this is not determined.
         constexpr double rank_tolerance = 1e-6;
         for (int c = 0; c < n; ++c) {
-            const Real diagonal = entry(sums, lane, c, c);
+            const int* const from = equations.sum[c];
             for (int r = c / 4 * 4; r < rows; r += 4) {
-                Real a = entry(sums, lane, r, c), b = entry(sums, lane, r + 1, c), d = entry(sums, lane, r + 2, c),
-                     e = entry(sums, lane, r + 3, c);
-                for (int k = 0; k < c; ++k) {
-                    const Real by = raw[k][c];
-                    a -= low[k][r] * by, b -= low[k][r + 1] * by, d -= low[k][r + 2] * by, e -= low[k][r + 3] * by;
-                }
-                raw[c][r] = a, raw[c][r + 1] = b, raw[c][r + 2] = d, raw[c][r + 3] = e;
+                Real a[4];
+                for (int i = 0; i < 4; ++i) a[i] = load(&sums.at[from[r + i]][lane]);
+                // The element itself, where all monomials but the constant are 0.
+                if (Constant && c == 0 && r == 0) a[0] += 1;
+                for (int k = 0; k < c; ++k)
+                    for (int i = 0; i < 4; ++i) a[i] -= low[k][r + i] * raw[k][c];
+                for (int i = 0; i < 4; ++i) raw[c][r + i] = a[i];
             }
-            const Real pivot = raw[c][c];
+            const Real pivot = raw[c][c], diagonal = load(&sums.at[from[c]][lane]) + (Constant && c == 0 ? 1 : 0);
             determined &= (pivot > rank_tolerance * diagonal) & (diagonal <= __DBL_MAX__);
             inverse[c] = 1 / pivot;
             for (int r = c / 4 * 4; r < rows; ++r) low[c][r] = r > c ? raw[c][r] * inverse[c] : Real{};
         }
-    }
-
-  private:
-    GAUSSMAP_INLINE static Real entry(const LaneSums& sums, int lane, int r, int c) {
-        if (r == n) return load(&sums.height[c + unknowns.skip][lane]);
-        if (r > n) return Real{};
-        const int at = unknowns.product[r][c];
-        const Real value = load(&sums.power[at][lane]);
-        return at == 0 ? value + 1 : value;  // the element itself, where all other monomials are 0
     }
 };
 
 /// Of the second derivatives: products of columns of the inverse of L, from their diagonals on.
 template <int Degree, bool Constant>
 GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, int lane, LaneFields& fields) {
-    constexpr int n = factors.n, begin = 3 - factors.unknowns.skip;
+    constexpr int n = factors.n, begin = 3 - factors.equations.skip;
     constexpr double factor[3] = {2, 1, 2};
     Real column[3][n];
     for (int q = 0; q < 3; ++q) {
@@ -226,8 +221,8 @@ GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, 
 template <int Degree, bool Constant>
 void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fields) {
     const Factors<Degree, Constant> factors(sums, lane);
-    constexpr int n = factors.n, skip = factors.unknowns.skip;
-    Real residual = load(&sums.square[lane]), x[n];
+    constexpr int n = factors.n, skip = factors.equations.skip;
+    Real residual = load(&sums.at[sums.square][lane]), x[n];
     for (int k = 0; k < n; ++k) {
         residual -= factors.raw[k][n] * factors.low[k][n];
         x[k] = factors.low[k][n];
