@@ -116,21 +116,62 @@ bool Jet<Degree>::fit(const Neighborhood& neighborhood, const Frame& frame, Vec3
     return finite(normal);
 }
 
-/// The highest degree up to the one asked for that the neighbours determine; 0 where none.
-int NormalFit::fit_jet(const Neighborhood& neighborhood, const Frame& frame, Vec3& normal) {
-    if (degree_ >= 4 && std::get<3>(jets_).fit(neighborhood, frame, normal)) return 4;
-    if (degree_ >= 3 && std::get<2>(jets_).fit(neighborhood, frame, normal)) return 3;
-    if (degree_ >= 2 && std::get<1>(jets_).fit(neighborhood, frame, normal)) return 2;
-    return std::get<0>(jets_).fit(neighborhood, frame, normal) ? 1 : 0;
+bool NormalFit::fit_alone(int degree, const Neighborhood& neighborhood, const Frame& frame, Vec3& normal) {
+    switch (degree) {
+        case 4:
+            return std::get<3>(jets_).fit(neighborhood, frame, normal);
+        case 3:
+            return std::get<2>(jets_).fit(neighborhood, frame, normal);
+        case 2:
+            return std::get<1>(jets_).fit(neighborhood, frame, normal);
+        default:
+            return std::get<0>(jets_).fit(neighborhood, frame, normal);
+    }
 }
 
-NormalFit::Result NormalFit::operator()(const Neighborhood& neighborhood) {
-    Result result = {principal_normal(neighborhood, method_ == CloudNormals::weighted_pca)};
-    if (method_ != CloudNormals::jet || !finite(result.normal)) return result;
-    const Frame frame = frame_about(result.normal);
-    result.lowered = fit_jet(neighborhood, frame, result.normal) < degree_;
-    result.normal = upward(result.normal);
-    return result;
+/// Fits over the frames of some lanes, where a kernel has the degree. The others may yet be determined: the condition
+/// of normal equations is that of the fit squared.
+void NormalFit::fit_in_lanes(int degree, std::span<const Neighborhood> around, const Group& group) {
+    std::fill_n(fields_.determined, fit_lanes, false);
+    if (degree != 2 && degree != 4) return;
+    const LaneFit& fit = degree == 2 ? best_lane_fit().quadric : best_lane_fit().quartic;
+    const auto unknowns = static_cast<std::size_t>(monomials(degree)) - 1;
+    LaneRange range = {{}, {}, Chart::monge, false};
+    for (std::size_t l = 0; l < around.size(); ++l) {
+        const Neighborhood& one = around[l];
+        if (!group.wanted[l] || one.count < unknowns || one.count > most_fitted) continue;
+        range.last[l] = static_cast<int>(one.count);
+        patches_.see(static_cast<int>(l), group.frame[l], 1);
+        for (std::size_t j = 0; j < one.count; ++j)
+            patches_.d[j][0][l] = one.x[j], patches_.d[j][1][l] = one.y[j], patches_.d[j][2][l] = one.z[j];
+    }
+    fit.collect(patches_, range, true, sums_);
+    fit.solve(sums_, false, false, fields_);
+}
+
+void NormalFit::operator()(std::span<const Neighborhood> around, std::span<Result> results) {
+    Group group = {};
+    std::size_t wanted = 0;
+    for (std::size_t l = 0; l < around.size(); ++l) {
+        results[l] = {principal_normal(around[l], method_ == CloudNormals::weighted_pca)};
+        if (method_ != CloudNormals::jet || !finite(results[l].normal)) continue;
+        group.frame[l] = frame_about(results[l].normal);
+        group.wanted[l] = results[l].lowered = true;
+        ++wanted;
+    }
+    // The highest degree up to the one asked for that the neighbours determine.
+    for (int degree = degree_; degree > 0 && wanted > 0; --degree) {
+        fit_in_lanes(degree, around, group);
+        for (std::size_t l = 0; l < around.size(); ++l) {
+            if (!group.wanted[l]) continue;
+            const Frame& frame = group.frame[l];
+            Vec3 normal = unit(frame.n - fields_.c[1][l] * frame.u - fields_.c[2][l] * frame.v);
+            if (!(fields_.determined[l] && finite(normal)) && !fit_alone(degree, around[l], frame, normal)) continue;
+            results[l] = {upward(normal), degree < degree_};
+            group.wanted[l] = false;
+            --wanted;
+        }
+    }
 }
 
 }  // namespace gaussmap
