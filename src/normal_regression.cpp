@@ -51,9 +51,10 @@ ElementNormals fit_normals(const Elements& elements, int k, CloudNormals method,
     for_neighborhoods(elements, k, run, [&](std::size_t /*block*/) {
         return [&, fit = NormalFit(method, degree, static_cast<std::size_t>(k))](std::size_t i,
                                                                                  const Neighborhood& around) mutable {
-            const auto [normal, lowered] = fit(around);
-            normals.normal[i] = normal;
-            normals.lowered[i] = lowered ? 1 : 0;
+            NormalFit::Result result;
+            fit({&around, 1}, {&result, 1});
+            normals.normal[i] = result.normal;
+            normals.lowered[i] = result.lowered ? 1 : 0;
         };
     });
     return normals;
