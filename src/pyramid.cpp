@@ -54,10 +54,10 @@ class LocalFit {
         ++count_;
     }
 
-    /// Of a quadric; of a plane where the data do not determine one well, else the mean.
-    std::array<double, values> at_origin() const {
+    /// Of a quadric if asked for; of a plane where the data do not determine one well, else the mean.
+    std::array<double, values> at_origin(bool quadric) const {
         std::array<double, values> result;
-        if (count_ >= 9 && solve<6>(result)) return result;
+        if (quadric && count_ >= 9 && solve<6>(result)) return result;
         if (count_ >= 5 && solve<3>(result)) return result;
         solve<1>(result);
         return result;
@@ -100,7 +100,7 @@ constexpr float apart = 9;
 
 /// What is known about the element `from`, interpolated among it and its neighbours at a foot nearby, put in
 /// place i.
-void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, Measured& result,
+void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, bool quadric, Measured& result,
                  std::size_t i) {
     const Vec3 normal = known.normal[from];
     const Frame frame = frame_about(normal);
@@ -125,7 +125,7 @@ void interpolate(const Level& level, const Measured& known, std::size_t from, Ve
     take(from);
     for (std::size_t j = 0; j < ElementGraph::degree && level.graph[from][j] >= 0; ++j)
         take(static_cast<std::size_t>(level.graph[from][j]));
-    const auto value = fit.at_origin();
+    const auto value = fit.at_origin(quadric);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
     result.density[i] = std::max(0.0, value[0]);
     result.risk[i] = known.risk[from];
@@ -188,22 +188,22 @@ void refine(const Level& above, const Measured& coarse, const Level& level, Meas
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
             const auto parent = static_cast<std::size_t>(level.parent[i]);
-            if (coarse.risk[parent] < fine.risk[i]) interpolate(above, coarse, parent, level.foot_of(i), fine, i);
+            if (coarse.risk[parent] < fine.risk[i]) interpolate(above, coarse, parent, level.foot_of(i), true, fine, i);
         }
     });
 }
 
-void borrow(const Level& level, Measured& measured, const Execution& run) {
+void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured& measured, const Execution& run) {
     const Measured known = measured;
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
             std::size_t best = i;
             for (std::size_t j = 0; j < ElementGraph::degree && level.graph[i][j] >= 0; ++j) {
                 const auto other = static_cast<std::size_t>(level.graph[i][j]);
-                if (known.risk[other] < known.risk[best]) best = other;
+                if (lends[other] && known.risk[other] < known.risk[best]) best = other;
             }
             if (apart * known.risk[best] < known.risk[i])
-                interpolate(level, known, best, level.foot_of(i), measured, i);
+                interpolate(level, known, best, level.foot_of(i), false, measured, i);
         }
     });
 }

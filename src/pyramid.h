@@ -45,7 +45,7 @@ struct Measured {
 /// Give the elements of a level what the next one above promises to know better, by interpolation between feet.
 void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run);
 
-/// Give elements that know far worse than one of their neighbours what that one knows, interpolated likewise.
-void borrow(const Level& level, Measured& measured, const Execution& run);
+/// Give elements that know far worse than a neighbour that lends what that one knows, interpolated likewise.
+void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured& measured, const Execution& run);
 
 }  // namespace gaussmap

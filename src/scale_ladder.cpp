@@ -483,6 +483,16 @@ Measured measured_so_far(const AutomaticCurvature& result) {
     return measured;
 }
 
+/// At corners of borders windows may find no surface at all.
+void borrow_on_ladder(const Level& level, Measured& measured, const Execution& run) {
+    constexpr int turns = 3;
+    std::vector<std::uint8_t> climbed(level.count());
+    for (int turn = 0; turn < turns; ++turn) {
+        for (std::size_t i = 0; i < level.count(); ++i) climbed[i] = measured.choice[i] >= first_rung_choice;
+        borrow(level, climbed, measured, {run.threads, {}});
+    }
+}
+
 bool any(const std::vector<std::uint8_t>& flags) {
     return std::find(flags.begin(), flags.end(), 1) != flags.end();
 }
@@ -530,8 +540,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     }
     for (std::size_t l = levels.size() - 1; l > 0; --l)
         refine(levels[l], measured[l], levels[l - 1], measured[l - 1], {run.threads, {}});
-    constexpr int turns_of_borrowing = 3;
-    for (int turn = 0; turn < turns_of_borrowing; ++turn) borrow(levels.front(), measured.front(), {run.threads, {}});
+    borrow_on_ladder(levels.front(), measured.front(), run);
     const Measured& lowest = measured.front();
     for (std::size_t i = 0; i < elements.count; ++i)
         if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.risk[i]);
