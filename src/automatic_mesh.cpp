@@ -69,7 +69,7 @@ void automatic_mesh(Points vertices, Triangles faces, const MeshCurvatureOptions
         found = automatic_curvature(elements_of(vertices, rings), size, options.run);
     take_sides(found, result);
     if (!found.density.empty())
-        take_one_rings(vertices, faces, {result.normals.data(), count}, found, {options.run.threads, {}});
+        take_one_rings(vertices, faces, rings, {result.normals.data(), count}, found, {options.run.threads, {}});
     result.density = std::move(found.density);
     result.density.resize(count, nan);
     result.choice = std::move(found.choice);
