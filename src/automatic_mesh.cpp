@@ -67,9 +67,11 @@ void automatic_mesh(Points vertices, Triangles faces, const MeshCurvatureOptions
     AutomaticCurvature found;
     if (const double size = diagonal(vertices, rings); std::isfinite(size) && size > 0)
         found = automatic_curvature(elements_of(vertices, rings), size, options.run);
+    const std::vector<double> own = result.normals;
     take_sides(found, result);
     if (!found.density.empty())
-        take_one_rings(vertices, faces, rings, {result.normals.data(), count}, found, {options.run.threads, {}});
+        take_one_rings(vertices, faces, rings, {result.normals.data(), count}, {own.data(), count}, found,
+                       {options.run.threads, {}});
     result.density = std::move(found.density);
     result.density.resize(count, nan);
     result.choice = std::move(found.choice);
