@@ -1,10 +1,12 @@
 #include "one_ring.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "corrected_curvature.h"
+#include "first_look.h"
 
 namespace gaussmap {
 namespace {
@@ -28,15 +30,12 @@ double mean_around(std::size_t vertex, const std::vector<double>& field, const V
     return sum / terms;
 }
 
-/// Whether faces go all the way round each vertex: on borders the one-ring is one-sided, and errs with the edge's
-/// length rather than with its square.
-std::vector<std::uint8_t> whole_rings(Triangles faces, const VertexRings& rings, std::size_t count) {
-    std::vector<std::uint32_t> corners(count, 0);
-    for (std::size_t f = 0; f < faces.count; ++f)
-        for (int c = 0; c < 3; ++c) ++corners[static_cast<std::size_t>(faces[f][c])];
-    std::vector<std::uint8_t> whole(count);
-    for (std::size_t v = 0; v < count; ++v) whole[v] = corners[v] >= rings.degree(v);
-    return whole;
+/// Whether the one-ring is closed, and those of its vertices: on borders the measures are one-sided, and err with the
+/// edge's length rather than with its square, and so do the normals of meshes.
+bool inside(std::size_t vertex, const VertexRings& rings) {
+    const auto around = rings.around(vertex);
+    return !rings.open(vertex) && std::none_of(around.begin(), around.end(),
+                                               [&](std::int32_t v) { return rings.open(static_cast<std::size_t>(v)); });
 }
 
 }  // namespace
@@ -44,24 +43,28 @@ std::vector<std::uint8_t> whole_rings(Triangles faces, const VertexRings& rings,
 void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, Points fitted_normals,
                     Points mesh_normals, AutomaticCurvature& found, const Execution& run) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-    constexpr std::uint8_t clean = 2;
+    constexpr std::uint8_t lowered = 1, clean = 2;
     const std::size_t count = found.density.size();
     const std::vector<double> corrected = corrected_density(vertices, faces, fitted_normals, run);
-    const std::vector<std::uint8_t> whole = whole_rings(faces, rings, count);
     // Relative to the fits: squares of densities have no place among floats.
     std::vector<float> change(count, nan), difference(count, nan), blur(count, nan);
     for (std::size_t i = 0; i < count; ++i) {
-        if (found.choice[i] != clean || !whole[i]) continue;
+        if (found.choice[i] != clean || !inside(i, rings)) continue;
         change[i] = static_cast<float>((corrected[i] - found.density[i]) * found.unit);
         difference[i] = change[i] * change[i];
         blur[i] = static_cast<float>(std::pow((mean_around(i, corrected, rings) - corrected[i]) * found.unit, 2));
     }
     std::vector<float> rough = roughness(change, found.graph, run);
     for (auto* field : {&rough, &difference, &blur}) diffuse(*field, found.graph, reach, run);
+    const bool enough = count > wide_neighbors;
     const std::vector<double> own = corrected_density(vertices, faces, mesh_normals, run);
     for (std::size_t i = 0; i < count; ++i) {
-        if (!std::isfinite(change[i]) || !std::isfinite(own[i])) continue;
-        if (!(difference[i] > of_blur * blur[i] + of_rough * rough[i])) continue;
+        if (found.choice[i] != clean && found.choice[i] != lowered) continue;
+        if (!std::isfinite(own[i]) || !inside(i, rings)) continue;
+        // Where many neighbours lie on too few lines for a quartic, as on long cells, there is no fit to speak of.
+        const bool lines = found.choice[i] == lowered && enough;
+        const bool wrong = found.choice[i] == clean && difference[i] > of_blur * blur[i] + of_rough * rough[i];
+        if (!lines && !wrong) continue;
         found.density[i] = own[i];
         found.choice[i] = one_ring_choice;
     }

@@ -22,31 +22,47 @@ void for_edges(Points vertices, Triangles faces, Body&& body) {
 }
 
 /// The squared length in which the rings about a vertex are round. On grids of unlike spacings, the nearest in space
-/// lie on one line or two, and determine nothing; the rings do.
+/// lie on one line or two, and determine nothing; the rings do. Across a border it is shorter than along it: half discs
+/// hold too few rows for a quartic.
 class RingMetric {
   public:
-    /// \param moments  sum of d dᵀ over the rings.
-    explicit RingMetric(const Symmetric3& moments) {
+    /// \param rings   differences from the vertex.
+    /// \param border  whether a border is among them.
+    RingMetric(const std::vector<Vec3>& rings, bool border) {
+        Symmetric3 moments;
+        Vec3 sum;
+        for (const Vec3 d : rings) add_product(moments, 1, d, d), sum = sum + d;
         const Eigen3 axes = eigen(moments);
         // Across the surface as along the shorter of its axes.
         const double least = std::max(axes.values[1], 1e-6 * axes.values[2]);
         axis_ = axes.vectors[2];
         along_ = least > 0 ? least / axes.values[2] - 1 : 0;
+        if (!border) return;
+
+        inward_ = sum - dot(sum, axes.vectors[0]) * axes.vectors[0];
+        inward_ = inward_ + along_ * dot(axis_, inward_) * axis_;
+        double first = 0, second = 0;
+        for (const Vec3 d : rings) first += dot(inward_, d), second += dot(inward_, d) * dot(inward_, d);
+        if (!(second > 0)) return;
+        // 0 where rings are the same on either side, 0.57 on straight borders of grids.
+        const double one_sided = first * first / (second * static_cast<double>(rings.size()));
+        deep_ = -std::min(1.2 * one_sided, 0.75) / first;
     }
 
     double operator()(Vec3 d) const {
-        const double t = dot(axis_, d);
-        return squared(d) + along_ * t * t;
+        const double t = dot(axis_, d), in = dot(inward_, d);
+        return squared(d) + along_ * t * t + deep_ * in * in;
     }
 
   private:
-    Vec3 axis_;
-    double along_;
+    Vec3 axis_, inward_;
+    double along_, deep_ = 0;
 };
 
 }  // namespace
 
-VertexRings::VertexRings(Points vertices, Triangles faces) : vertices_(vertices), offset_(vertices.count + 1) {
+VertexRings::VertexRings(Points vertices, Triangles faces)
+    : vertices_(vertices), offset_(vertices.count + 1), open_(vertices.count) {
     check_faces(faces, vertices.count);
     for_edges(vertices, faces, [&](std::int32_t from, std::int32_t) { ++offset_[static_cast<std::size_t>(from)]; });
     std::size_t sum = 0;
@@ -63,6 +79,8 @@ VertexRings::VertexRings(Points vertices, Triangles faces) : vertices_(vertices)
         offset_[v] = static_cast<std::size_t>(end - neighbor_.begin());
         std::sort(first, last);
         end = std::unique_copy(first, last, end);
+        open_[v] =
+            last - first < 2 * (end - neighbor_.begin() - static_cast<std::ptrdiff_t>(offset_[v])) || first == last;
     }
     offset_.back() = static_cast<std::size_t>(end - neighbor_.begin());
     neighbor_.resize(offset_.back());
@@ -143,12 +161,13 @@ void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* r
     std::size_t inner[2] = {};  // vertices met on the first ring, and on the first two
     meet(vertex, wanted + wanted / 4, 4 * wanted, room, inner);
     const Vec3 here = load(vertices_[vertex]);
-    Symmetric3 moments;
-    for (std::size_t j = 0; j < inner[1]; ++j) {
-        const Vec3 d = load(vertices_[room.met_[j]]) - here;
-        add_product(moments, 1, d, d);
+    room.rings_.clear();
+    bool border = false;
+    for (std::size_t j = 1; j < inner[1]; ++j) {
+        room.rings_.push_back(load(vertices_[room.met_[j]]) - here);
+        border = border || open(static_cast<std::size_t>(room.met_[j]));
     }
-    const RingMetric metric(moments);
+    const RingMetric metric(room.rings_, border);
     room.nearest_.clear();
     std::size_t sorted = 0;
     for (std::size_t j = 0; j < room.met_.size(); ++j) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaussmap/types.h"
+#include "vec.h"
 
 namespace gaussmap {
 
@@ -19,6 +20,9 @@ class VertexRings {
     VertexRings(Points vertices, Triangles faces);
 
     std::size_t degree(std::size_t vertex) const { return offset_[vertex + 1] - offset_[vertex]; }
+
+    /// Whether faces do not go all the way round the vertex: on borders, and at vertices of no face.
+    bool open(std::size_t vertex) const { return open_[vertex] != 0; }
 
     std::span<const std::int32_t> around(std::size_t vertex) const {
         return {neighbor_.data() + offset_[vertex], degree(vertex)};
@@ -37,6 +41,7 @@ class VertexRings {
         std::vector<std::int32_t> slots_;  ///< open addressing; −1 where free
         std::vector<std::size_t> taken_;   ///< of the slots
         std::vector<std::int32_t> met_;    ///< in the order of the rings
+        std::vector<Vec3> rings_;          ///< the first two, as differences
         std::vector<Met> nearest_, unsorted_;
         std::vector<std::size_t> ends_;  ///< of buckets
     };
@@ -54,6 +59,7 @@ class VertexRings {
     Points vertices_;
     std::vector<std::size_t> offset_;
     std::vector<std::int32_t> neighbor_;
+    std::vector<std::uint8_t> open_;
 };
 
 }  // namespace gaussmap
