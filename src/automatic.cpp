@@ -136,6 +136,10 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
     for (const std::size_t n : lowered) result.lowered += n;
 
     const ElementGraph& graph = result.graph;
+    // Of the deviations from the neighbours' mean, so that a smooth density's slope and bend do not pass for noise.
+    std::vector<float> smooth = looks.scatter;
+    diffuse(smooth, graph, 1, run);
+    for (std::size_t i = 0; i < tile.count; ++i) looks.scatter[i] -= smooth[i];
     looks.scatter = roughness(looks.scatter, graph, run);
     diffuse({&looks.residual, &looks.wide_residual, &looks.scatter}, graph, noise_reach, run);
     for (std::size_t i = 0; i < tile.count; ++i) {

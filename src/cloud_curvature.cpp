@@ -260,23 +260,13 @@ void place_normals(const Work& work, CloudCurvature& result) {
     }
 }
 
-/// Less than a quadric has no curvature.
-void check_jet(const CloudCurvatureOptions& options) {
-    if (options.degree < 2)
-        throw std::invalid_argument("degree = " + std::to_string(options.degree) +
-                                    " has no curvature; estimator = jet takes 2 to 4");
-    if (options.k < 5)
-        throw std::invalid_argument("k = " + std::to_string(options.k) +
-                                    " is too small; estimator = jet takes at least 5 neighbours");
-}
-
 void check(Points points, Points normals, const CloudCurvatureOptions& options) {
     check_estimator(options.estimator, Input::cloud, options.confidence);
     if (options.k < 3)
         throw std::invalid_argument("k = " + std::to_string(options.k) +
                                     " is too small; a fan takes at least 3 neighbours");
     check_degree(options.degree);
-    if (options.estimator == Estimator::jet) check_jet(options);
+    if (options.estimator == Estimator::jet) check_jet(options.k, options.degree);
     if (!normals.empty()) check_count("normals", normals.count, points.count, "points");
 }
 

@@ -45,10 +45,17 @@ void check_estimator(Estimator estimator, Input input, bool confidence) {
     const std::string shown = std::string("estimator = ") + estimator_name(estimator);
     if (estimator == Estimator::corrected && input == Input::cloud)
         throw std::invalid_argument(shown + " is for meshes; a cloud has no faces");
-    if ((estimator == Estimator::regression || estimator == Estimator::jet) && input == Input::mesh)
-        throw std::invalid_argument(shown + " is for clouds; take the vertices as one, or use dirichlet or corrected");
     const bool fits = estimator != Estimator::dirichlet && estimator != Estimator::corrected;
     if (confidence && !fits) throw std::invalid_argument(shown + " has no confidence: nothing is fitted");
+}
+
+void check_jet(int k, int degree) {
+    if (degree < 2)
+        throw std::invalid_argument("degree = " + std::to_string(degree) +
+                                    " has no curvature; estimator = jet takes 2 to 4");
+    if (k < 5)
+        throw std::invalid_argument("k = " + std::to_string(k) +
+                                    " is too small; estimator = jet takes at least 5 neighbours");
 }
 
 }  // namespace gaussmap
