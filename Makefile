@@ -12,7 +12,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
-THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance
+THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
