@@ -14,7 +14,7 @@ OPTIONS = {
     "compare": "--samples --bound --tolerance",
     "sample": "--count --method --output --format --ascii",
     "shape": "--subdivisions --radius --major --minor --grid --p --q --scale --axes --amplitude --frequency "
-    "--wavelength --width --depth --height --jitter --noise --output --format --ascii",
+    "--wavelength --width --depth --height --jitter --noise --noise-unit --output --format --ascii",
     "view": "--field --as --range --size --views --from --up --output",
     "convert": "--weld --triangulate --output --format --ascii",
     "info": "",

@@ -138,8 +138,7 @@ TEST(ClosestIndex, SaysWhatItRefuses) {
     EXPECT_EQ(refusal([&] { ClosestIndex(bad, shape.faces); }),
               "vertices[2], of faces[0], is not finite; leave it out first");
     EXPECT_EQ(refusal([&] { ClosestIndex index(bad); }), "vertices[2] is not finite; leave it out first");
-    EXPECT_EQ(refusal([&] { ClosestIndex index{Points()}; }),
-              "vertices is empty; a surface or a cloud needs some");
+    EXPECT_EQ(refusal([&] { ClosestIndex index{Points()}; }), "vertices is empty; a surface or a cloud needs some");
     const std::vector<std::int32_t> outside = {0, 1, 4};
     EXPECT_EQ(refusal([&] { ClosestIndex(shape.vertices, outside); }), "faces[0][2] = 4 is outside [0, 4)");
     const ClosestIndex index(shape.vertices, shape.faces);
