@@ -8,6 +8,7 @@ are compared with libigl's (double precision) and Open3D's (single precision).
 import argparse
 import importlib.metadata
 import json
+import math
 import os
 import subprocess
 import tempfile
@@ -111,6 +112,7 @@ def meshlab(arguments):
     meshes = pymeshlab.MeshSet()
     for path in (arguments.source, arguments.target):
         meshes.load_new_mesh(str(path))
+        meshes.meshing_remove_unreferenced_vertices()  # which it would sample: they are no part of a surface
     print("\n| | | max | RMS | mean | s |\n|---|---|---|---|---|---|")
     name = "MeshLab " + importlib.metadata.version("pymeshlab")
     for way, one, other in (("forward", 0, 1), ("backward", 1, 0)):
@@ -125,10 +127,10 @@ def meshlab(arguments):
             print(f"| {label} | | {row['max']:.6g} | {row['rms']:.6g} | {row['mean']:.6g} | {spent:.2f} |")
         bound = ours["bound"][way]
         print(f"| gaussmap --bound, {way} | | {bound['lower']:.6g} to {bound['upper']:.6g} | | | |")
-        # Single precision, and theirs are random samples.
+        # Theirs are in single precision, and independent samples: five standard errors of their mean.
         assert theirs["max"] <= bound["upper"] * (1 + 1e-5) + 1e-6
-        for key in ("rms", "mean"):
-            assert abs(theirs[key] - ours[way][key]) <= 0.01 * ours[way][key] + 1e-6, (key, theirs[key], ours[way][key])
+        spread = math.sqrt(max(0, ours[way]["rms"] ** 2 - ours[way]["mean"] ** 2) / arguments.count)
+        assert abs(theirs["mean"] - ours[way]["mean"]) <= 5 * spread + 1e-6, (way, theirs["mean"], ours[way]["mean"])
 
 
 def main():
