@@ -42,7 +42,7 @@ void declare(CommandLine& line, Options& o) {
     line.option("--samples", o.samples, "N",
                 "Points on the faces of each mesh, and a quarter as many on its edges; all vertices besides (default: "
                 "500000)")
-        ->check(whole_number(1, 1000000000));
+        ->check(whole_number(1, 100000000));
     line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)")->check(whole_number(0, INT64_MAX));
     line.group("Bounds");
     line.flag("--bound", o.bound, "Bound the Hausdorff distances with certainty");
