@@ -226,9 +226,12 @@ TEST(SurfaceDistance, FollowsMotionAndUnit) {
         for (double& v : out) v = scale * v + shift;
         return out;
     };
-    for (const auto& [scale, shift, precision] :
-         {std::tuple{1.0, 0.0, 1e-13}, {1e-20, 0.0, 1e-13}, {1e20, 0.0, 1e-13}, {1.0, 1e7, 1e-7}}) {
-        const std::vector<double> moved_a = moved(a, scale, shift), moved_b = moved(b, scale, shift);
+    struct Motion {
+        double scale, shift, precision;
+    };
+    for (const Motion& motion : {Motion{1, 0, 1e-13}, {1e-20, 0, 1e-13}, {1e20, 0, 1e-13}, {1, 1e7, 1e-7}}) {
+        const double scale = motion.scale, precision = motion.precision;
+        const std::vector<double> moved_a = moved(a, scale, motion.shift), moved_b = moved(b, scale, motion.shift);
         const SurfaceDistance now = surface_distance(moved_a, a.faces, moved_b, b.faces, options);
         const auto expect = [&](const Deviation& x, const Deviation& y) {
             EXPECT_NEAR(x.max / scale, y.max, precision);
