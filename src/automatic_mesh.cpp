@@ -20,6 +20,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 Elements elements_of(Points vertices, const VertexRings& rings) {
     Elements elements;
     elements.count = vertices.count;
+    elements.connected = true;
     elements.position = [vertices](std::size_t i) { return load(vertices[i]); };
     elements.neighbors = [&rings](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
         VertexRings::Room room;
