@@ -120,9 +120,7 @@ CommandLine::CommandLine(std::string usage, std::string about, std::string examp
 
 void CommandLine::input(std::string& value, const std::string& name, const std::string& about) {
     app_.add_option(name, value)->group("");
-    input_name_ = name;
-    input_about_ = about;
-    input_value_ = &value;
+    inputs_.push_back({name, about, &value});
 }
 
 CLI::Option* CommandLine::flag(const std::string& names, bool& value, const std::string& about) {
@@ -169,9 +167,10 @@ bool CommandLine::parse(int argc, char** argv) {
     }
     refuse_unknown();
     const std::string verb = argv[1];
-    if (input_value_ && input_value_->empty())
-        throw Failure(Exit::wrong_usage,
-                      fmt::format("{}: {} is missing; write: gaussmap {}", verb, input_name_, usage_));
+    for (const Input& input : inputs_)
+        if (input.value->empty())
+            throw Failure(Exit::wrong_usage,
+                          fmt::format("{}: {} is missing; write: gaussmap {}", verb, input.name, usage_));
     if (required_outputs_ && required_outputs_->empty())
         throw Failure(Exit::wrong_usage, fmt::format("{}: -o OUT is missing; write: gaussmap {}", verb, usage_));
     if (common.threads == 0) common.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -201,8 +200,9 @@ std::string CommandLine::help() const {
         begin = end + 1;
     }
     page += fmt::format("\nUsage: gaussmap {}\n\n{}\n", usage_, wrapped(about_, 0));
-    if (input_value_)
-        page += fmt::format("\n  {:<{}}{}\n", input_name_, option_width - 2, wrapped(input_about_, option_width));
+    for (const Input& input : inputs_)
+        page += fmt::format("{}  {:<{}}{}\n", &input == &inputs_.front() ? "\n" : "", input.name, option_width - 2,
+                            wrapped(input.about, option_width));
     std::vector<std::string> groups;
     for (const CLI::Option* option : app_.get_options())
         if (!option->get_group().empty() &&

@@ -30,7 +30,7 @@ class CommandLine {
     /// \param examples  lines of a command, two blanks and what it does
     CommandLine(std::string usage, std::string about, std::string examples);
 
-    /// The one positional argument, required.
+    /// A positional argument, required; the first one named is the first one typed.
     void input(std::string& value, const std::string& name, const std::string& about);
     /// Options of the group that `group` last began. `value_name` is what the help calls the value: "N".
     template <class Value>
@@ -62,9 +62,12 @@ class CommandLine {
 
     CLI::App app_;
     std::string usage_, about_, examples_, group_ = "Options";
-    std::string input_name_, input_about_;
+    struct Input {
+        std::string name, about;
+        const std::string* value;
+    };
+    std::vector<Input> inputs_;
     const std::vector<std::string>* required_outputs_ = nullptr;
-    const std::string* input_value_ = nullptr;
 };
 
 /// Lines of at most 80 columns, each but the first after `indent` blanks.

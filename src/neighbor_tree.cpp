@@ -1,5 +1,5 @@
-// The tree of neighbor_tree.h: 128 points in a row of the spatial order make the leaves of one node, parted at medians
-// as in a kd-tree (Friedman, Bentley, Finkel 1977), which makes their boxes tight; nodes above join eight in a row.
+// The tree of neighbor_tree.h: 128 points in a row of the spatial order make the leaves of one node, parted at medians;
+// nodes above join eight in a row.
 #include "neighbor_tree.h"
 
 #include <algorithm>
@@ -14,38 +14,6 @@ namespace {
 constexpr std::size_t bunch = std::size_t{leaf_points} * children;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Entry {
-    double p[3];
-    std::int32_t index;
-};
-
-constexpr Boxes no_boxes() {
-    Boxes boxes{};
-    for (int c = 0; c < children; ++c) {
-        for (int a = 0; a < 3; ++a) boxes.low[a][c] = infinity, boxes.high[a][c] = -infinity;
-        boxes.first[c] = nobody;
-    }
-    return boxes;
-}
-
-/// Part [first, last) into runs of 16 at medians of its widest dimension.
-void part(Entry* first, Entry* last) {
-    const auto leaves = (last - first + leaf_points - 1) / leaf_points;
-    if (leaves < 2) return;
-    Entry* const middle = first + (leaves + 1) / 2 * leaf_points;
-    double extent[3];
-    for (int a = 0; a < 3; ++a) {
-        double low = first->p[a], high = low;
-        for (const Entry* e = first; e != last; ++e) low = std::min(low, e->p[a]), high = std::max(high, e->p[a]);
-        extent[a] = high - low;
-    }
-    const auto widest = std::max_element(extent, extent + 3) - extent;
-    std::nth_element(first, middle, last,
-                     [widest](const Entry& a, const Entry& b) { return a.p[widest] < b.p[widest]; });
-    part(first, middle);
-    part(middle, last);
-}
-
 /// Store up to 16 entries as a leaf, and its box as child c.
 void fill(const Entry* first, std::size_t count, Leaf& leaf, Boxes& boxes, int c) {
     for (std::size_t i = 0; i < leaf_points; ++i) {
@@ -59,20 +27,6 @@ void fill(const Entry* first, std::size_t count, Leaf& leaf, Boxes& boxes, int c
         leaf.index[i] = there ? first[i].index : nobody;
         boxes.first[c] = std::min(boxes.first[c], leaf.index[i]);
     }
-}
-
-std::vector<Boxes> join(const std::vector<Boxes>& below) {
-    std::vector<Boxes> level(block_count(below.size(), children), no_boxes());
-    for (std::size_t i = 0; i < below.size(); ++i) {
-        Boxes& boxes = level[i / children];
-        const std::size_t c = i % children;
-        for (int a = 0; a < 3; ++a) {
-            boxes.low[a][c] = *std::min_element(below[i].low[a], below[i].low[a] + children);
-            boxes.high[a][c] = *std::max_element(below[i].high[a], below[i].high[a] + children);
-        }
-        boxes.first[c] = *std::min_element(below[i].first, below[i].first + children);
-    }
-    return level;
 }
 
 }  // namespace
@@ -95,7 +49,7 @@ NeighborTree neighbor_tree(Points points, const std::vector<std::int32_t>& order
                 const double* p = points[static_cast<std::size_t>(index)];
                 entries[i] = {{p[0], p[1], p[2]}, index};
             }
-            part(entries, entries + count);
+            part(entries, entries + count, leaf_points);
             for (std::size_t i = 0; i < count; i += leaf_points)
                 fill(entries + i, std::min<std::size_t>(leaf_points, count - i), tree.leaves[(begin + i) / leaf_points],
                      tree.levels[0][b], static_cast<int>(i / leaf_points));

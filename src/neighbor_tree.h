@@ -3,27 +3,20 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
+#include "box_tree.h"
 #include "gaussmap/types.h"
 #include "vec.h"
 
 namespace gaussmap {
 
-constexpr int leaf_points = 16, children = 8;
-constexpr std::int32_t nobody = std::numeric_limits<std::int32_t>::max();
+constexpr int leaf_points = 16;
 
 /// Up to 16 points; places beyond are at infinity and belong to nobody.
 struct alignas(64) Leaf {
     double p[3][leaf_points];
     std::int32_t index[leaf_points];
-};
-
-/// The boxes of the children of a node and the lowest index in each; boxes beyond are infinitely far, of nobody.
-struct alignas(32) Boxes {
-    double low[3][children], high[3][children];
-    std::int32_t first[children];
 };
 
 /// levels[0][i] holds the boxes of the leaves 8i … 8i + 7, levels[l][i] those of the nodes 8i … 8i + 7 of levels[l −

@@ -6,6 +6,8 @@
 //   curvature.h  mesh_curvature, cloud_curvature: the main job, each one call
 //   normals.h    unit normals of meshes and clouds, orientation
 //   neighbors.h  k nearest neighbours, fans, points without repetitions
+//   distance.h   exact closest points; distances of surfaces and clouds, sampled or bounded
+//   sampling.h   points on a surface: at random, Poisson-disk
 //   surfaces.h   analytic surfaces with exact normals and curvature
 //   inspect.h    boundary, non-manifold, degenerate, duplicate: what is in a file
 //   picture.h    a picture of the result, and its PNG
@@ -20,10 +22,12 @@
 #pragma once
 
 #include "gaussmap/curvature.h"
+#include "gaussmap/distance.h"
 #include "gaussmap/inspect.h"
 #include "gaussmap/io.h"
 #include "gaussmap/neighbors.h"
 #include "gaussmap/normals.h"
 #include "gaussmap/picture.h"
+#include "gaussmap/sampling.h"
 #include "gaussmap/surfaces.h"
 #include "gaussmap/types.h"

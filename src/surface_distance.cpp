@@ -1,0 +1,87 @@
+// Two-sided distances from samples: every sample's exact closest point, summed up in blocks of a fixed size.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "closest_tree.h"
+#include "parallel.h"
+#include "surface_samples.h"
+
+namespace gaussmap {
+namespace {
+
+/// Of all distances the maximum, of those from `first` on the mean and the root mean square.
+Deviation deviation_of(const std::vector<double>& distance, std::size_t first) {
+    Deviation deviation;
+    for (const double d : distance) deviation.max = std::max(deviation.max, d);
+    // Added up as a tree would, so that a million small terms lose nothing.
+    constexpr std::size_t block = 1024;
+    double sum = 0, squares = 0;
+    for (std::size_t i = first; i < distance.size();) {
+        double part = 0, part_squares = 0;
+        for (const std::size_t end = std::min(distance.size(), i + block); i < end; ++i)
+            part += distance[i], part_squares += distance[i] * distance[i];
+        sum += part, squares += part_squares;
+    }
+    const auto count = static_cast<double>(distance.size() - first);
+    deviation.mean = sum / count;
+    deviation.rms = std::sqrt(squares / count);
+    return deviation;
+}
+
+Deviation deviation_from(Points vertices, Triangles faces, const ClosestIndex& to, const DistanceOptions& options,
+                         SampleCounts& counts, const Execution& run) {
+    const SurfaceSamples samples =
+        surface_samples(vertices, faces, options.samples, options.seed, part_of(run, 0, 0.1));
+    counts = samples.counts;
+    const std::size_t first = counts.faces > 0   ? counts.vertices + counts.edges
+                              : counts.edges > 0 ? counts.vertices
+                                                 : 0;
+    return deviation_of(to.distances(samples.points, part_of(run, 0.1, 1)), first);
+}
+
+void check_named(const char* name, Points vertices, Triangles faces) {
+    try {
+        check_surface(vertices, faces);
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(std::string(name) + ": " + error.what());
+    }
+}
+
+}  // namespace
+
+double box_diagonal(Points vertices, Triangles faces) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
+    const auto include = [&](std::size_t v) {
+        for (int d = 0; d < 3; ++d)
+            low[d] = std::min(low[d], vertices[v][d]), high[d] = std::max(high[d], vertices[v][d]);
+    };
+    for (std::size_t i = 0; i < 3 * faces.count; ++i) include(static_cast<std::size_t>(faces.abc[i]));
+    for (std::size_t v = 0; faces.empty() && v < vertices.count; ++v) include(v);
+    return low[0] <= high[0] ? std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) : 0;
+}
+
+SurfaceDistance surface_distance(Points a, Triangles faces_a, Points b, Triangles faces_b,
+                                 const DistanceOptions& options) {
+    const Execution& run = options.run;
+    check_named("a", a, faces_a);
+    check_named("b", b, faces_b);
+    SurfaceDistance distance;
+    const auto measure = [&](Points from, Triangles from_faces, Points to, Triangles to_faces, SampleCounts& counts,
+                             const Execution& part) {
+        const ClosestIndex index(to, to_faces, part_of(part, 0, 0.1));
+        return deviation_from(from, from_faces, index, options, counts, part_of(part, 0.1, 1));
+    };
+    distance.forward = measure(a, faces_a, b, faces_b, distance.forward_samples, part_of(run, 0, 0.5));
+    distance.backward = measure(b, faces_b, a, faces_a, distance.backward_samples, part_of(run, 0.5, 1));
+    distance.symmetric = {std::max(distance.forward.max, distance.backward.max),
+                          std::max(distance.forward.rms, distance.backward.rms),
+                          std::max(distance.forward.mean, distance.backward.mean)};
+    distance.diagonal = box_diagonal(a, faces_a);
+    return distance;
+}
+
+}  // namespace gaussmap
