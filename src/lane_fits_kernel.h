@@ -200,7 +200,7 @@ struct Factors {
 /// Of the second derivatives: products of columns of the inverse of L, from their diagonals on.
 template <int Degree, bool Constant>
 GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, int lane, LaneFields& fields) {
-    constexpr int n = factors.n, begin = 3 - factors.equations.skip;
+    constexpr int n = Factors<Degree, Constant>::n, begin = Constant ? 3 : 2;
     constexpr double factor[3] = {2, 1, 2};
     Real column[3][n];
     for (int q = 0; q < 3; ++q) {
@@ -221,7 +221,7 @@ GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, 
 template <int Degree, bool Constant>
 void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fields) {
     const Factors<Degree, Constant> factors(sums, lane);
-    constexpr int n = factors.n, skip = factors.equations.skip;
+    constexpr int n = Factors<Degree, Constant>::n, skip = Constant ? 0 : 1;
     Real residual = load(&sums.at[sums.square][lane]), x[n];
     for (int k = 0; k < n; ++k) {
         residual -= factors.raw[k][n] * factors.low[k][n];

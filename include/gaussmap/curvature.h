@@ -167,8 +167,8 @@ struct CloudCurvature {
 /// \throw std::invalid_argument: k < 3 (5 for jets), a degree outside 1…4 (2…4 for the estimator `jet`), more than 2³¹
 /// points, a number of
 ///        normals that is neither 0 nor n, the estimator `corrected`, or confidence of an estimator that has none.
-/// Time O(n) fits for `automatic`, more where there is noise; else O(n k log k) for points on surfaces, memory about 85
-/// bytes a point beyond the input, the result included; 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
+/// Time O(n) fits for `automatic`, more where there is noise; else O(n k log k) for points on surfaces. Memory about 85
+/// bytes a point, the result included; more for noise, 4k + 60 more for `Orientation::mst`, 40 more for the tensor.
 /// Source: the paper; fan by inversion, eq. (7) of docs/method.md; jets and regression by eq. (13) to (15), `automatic`
 /// by (16) to (18).
 CloudCurvature cloud_curvature(Points points, Points normals = {}, const CloudCurvatureOptions& options = {});
