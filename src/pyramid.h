@@ -36,10 +36,11 @@ Level coarsened(Level& level, const Execution& run);
 /// What was measured at the elements of a level.
 struct Measured {
     std::vector<double> density;
-    std::vector<float> risk;  ///< expected squared error of the density; infinite where nothing was measured
+    std::vector<float> risk;     ///< expected squared error of the density; infinite where nothing was measured
+    std::vector<double> weight;  ///< what all that was mixed counts
     std::vector<Vec3> normal;
     std::vector<Symmetric3> tensor;
-    std::vector<std::uint8_t> choice;
+    std::vector<std::uint8_t> choice;  ///< of the smallest risk
 };
 
 /// Give the elements of a level what the next one above promises to know better, by interpolation between feet.

@@ -38,17 +38,12 @@ constexpr int level_of(int rung) {
 struct Traits {
     double variance;  ///< relative to the fit's
     double change;    ///< variance of the change to the next rung, relative to the family's own
-    /// How much of the bias the next rung adds to it: growth of h² less 1; of h⁴ were it for small windows, but
-    /// quartics of noisy data have windows as wide as the shape.
+    /// How much of the bias the next rung adds to it: at most the growth of h² less 1, 0.44, or of h⁴ less 1, 1.07 (of
+    /// quartics); windows of noisy data are as wide as the shape, and their bias grows more slowly.
     double bias;
 };
-constexpr double growth = 1.44;  ///< of the neighbours from rung to rung
-constexpr std::array<Traits, families> traits = {{{1, 0.42, growth - 1},
-                                                  {0.24, 0.31, growth - 1},
-                                                  {0.08, 0.35, growth - 1},
-                                                  {0.20, 0.30, growth - 1},
-                                                  {0.09, 0.28, growth - 1},
-                                                  {1, 0.50, 0.7}}};
+constexpr std::array<Traits, families> traits = {
+    {{1, 0.42, 0.38}, {0.24, 0.31, 0.38}, {0.08, 0.35, 0.36}, {0.20, 0.30, 0.36}, {0.09, 0.28, 0.32}, {1, 0.50, 0.6}}};
 
 /// Weighted sums in place of counts: the sandwich covariance of a fit with `SmoothingWeights` relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
@@ -135,6 +130,7 @@ Measured nothing_measured(std::size_t count) {
     Measured measured;
     measured.density.assign(count, nan);
     measured.risk.assign(count, never);
+    measured.weight.assign(count, 0);
     measured.normal.assign(count, Vec3{nan, nan, nan});
     measured.tensor.resize(count);
     measured.choice.assign(count, 0);
@@ -367,11 +363,52 @@ void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, 
 
 /// Squared changes relative to those expected of noise: what is usual over a wide region and near by, what is surely
 /// more than noise, and the most that counts, as the tails of noise are heavy.
-constexpr double usual = 1.3, usual_near = 2.2, sure = 2.5, most_surprising = 50;
+constexpr double usual = 1.2, usual_near = 2, sure = 2.5, most_surprising = 50;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
-/// Take a family's value where it promises a smaller error than what there is.
+struct Candidate {
+    double density;
+    float risk;
+    Vec3 normal;
+    Symmetric3 tensor;
+    std::uint8_t choice;
+};
+
+/// What a candidate counts; infinite risks count nothing.
+double weight_of(float risk) {
+    return std::pow(static_cast<double>(risk), -3);
+}
+
+/// Mix a candidate into what an element has, by the inverse cubes of their expected squared errors: near the best one
+/// several are about as good, and the choice among them is noise.
+void mix(const Candidate& candidate, std::size_t i, Measured& measured) {
+    const bool best = candidate.risk < measured.risk[i];
+    const double weight = weight_of(candidate.risk), so_far = measured.weight[i], part = weight / (weight + so_far);
+    if (!(part > 0)) return;
+    if (so_far > 0) {
+        const Vec3 normal = best ? candidate.normal : measured.normal[i];
+        const auto seen_along = [&](const Symmetric3& tensor, Vec3 from, double share, Symmetric3& sum) {
+            const double sign = dot(from, normal) < 0 ? -1 : 1;
+            add(sum, sign * share, carried(tensor, sign * from, normal));
+        };
+        Symmetric3 sum;
+        seen_along(measured.tensor[i], measured.normal[i], 1 - part, sum);
+        seen_along(candidate.tensor, candidate.normal, part, sum);
+        measured.tensor[i] = sum;
+        measured.density[i] += part * (candidate.density - measured.density[i]);
+    } else {
+        measured.tensor[i] = candidate.tensor;
+        measured.density[i] = candidate.density;
+    }
+    measured.weight[i] += weight;
+    if (!best) return;
+    measured.risk[i] = candidate.risk;
+    measured.normal[i] = candidate.normal;
+    measured.choice[i] = candidate.choice;
+}
+
+/// Mix in a family's values.
 void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Field& residual) {
     const Traits& known = traits[static_cast<std::size_t>(family)];
     const int q = of_quartic(family) ? 1 : 0;
@@ -427,12 +464,10 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
             standing_.least[family][i] = std::min(standing_.least[family][i], risk);
             if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
         }
-        if (!(risk < measured_.risk[i]) || std::pow(density - around[i], 2) > outlying * risk) continue;
-        measured_.risk[i] = risk;
-        measured_.density[i] = std::max(0.0, unbiased(lower, i));
-        measured_.normal[i] = lower.normal[i];
-        measured_.tensor[i] = lower.tensor[family][i];
-        measured_.choice[i] = rung_choice(rung, static_cast<Family>(family));
+        if (std::pow(density - around[i], 2) > outlying * risk) continue;
+        mix({std::max(0.0, unbiased(lower, i)), risk, lower.normal[i], lower.tensor[family][i],
+             rung_choice(rung, static_cast<Family>(family))},
+            i, measured_);
     }
 }
 
@@ -477,7 +512,10 @@ Level lowest_level(const Elements& elements, double scale, const ElementGraph& g
 Measured measured_so_far(const AutomaticCurvature& result) {
     Measured measured = nothing_measured(result.density.size());
     for (std::size_t i = 0; i < result.density.size(); ++i)
-        if (std::isfinite(result.error[i])) measured.risk[i] = static_cast<float>(result.error[i] * result.error[i]);
+        if (std::isfinite(result.error[i])) {
+            measured.risk[i] = static_cast<float>(result.error[i] * result.error[i]);
+            measured.weight[i] = weight_of(measured.risk[i]);
+        }
     measured.density = result.density, measured.normal = result.normal;
     measured.tensor = result.tensor, measured.choice = result.choice;
     return measured;
