@@ -16,7 +16,7 @@ namespace {
 /// Fits that differ by more than 1.5 times that error, squared, are the culprits; unless the difference is rough, as it
 /// is on irregular meshes (the mean square deviation from the mean nearby is 0.7 of the mean square and more), where it
 /// is the measures that err.
-constexpr double of_blur = 0.7, of_rough = 3;
+constexpr double of_blur = 0.7, of_rough = 2;
 constexpr int reach = 8;  ///< steps of diffusion
 
 /// Over the vertices of the one-ring.
