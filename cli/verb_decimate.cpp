@@ -40,10 +40,10 @@ constexpr const char* about =
 
 constexpr const char* examples =
     "gaussmap decimate bunny.ply -o small.ply --faces 5000\n"
-    "gaussmap decimate bunny.ply -o small.ply --ratio 0.1  a tenth of the triangles\n"
+    "gaussmap decimate bunny.ply -o small.ply --ratio 0.1  a tenth of it\n"
     "gaussmap decimate bunny.ply -o small.ply --error 0.001\n"
-    "                                                    as few as keep the Hausdorff\n"
-    "                                                    distance below 0.1 % of the box\n"
+    "                                                  Hausdorff distance at most\n"
+    "                                                  0.1 % of the box's diagonal\n"
     "gaussmap decimate scan.stl -o small.stl --ratio 0.05 --fast";
 
 void declare(CommandLine& line, Options& o) {
