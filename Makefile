@@ -5,6 +5,7 @@
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
+#   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -12,7 +13,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
-THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance
+THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
@@ -21,7 +22,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -82,6 +83,12 @@ bench-accuracy: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_accuracy
 	/usr/bin/python3 bench/accuracy.py build/bench $(if $(QUICK),--quick)
+
+bench-distance: packages = packages.txt bench/packages.txt
+bench-distance: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_closest gaussmap_cli
+	/usr/bin/python3 bench/distance.py build/bench $(IN)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null

@@ -19,6 +19,8 @@ import sys
 from collections import defaultdict
 from pathlib import Path
 
+from environment import python_of_peers
+
 SOURCE = Path(__file__).resolve().parent
 SURFACES = ["torus5", "torus7", "knot23", "knot35", "fig8", "ell", "bumpy", "cube", "waves", "catenoid", "monkey"]
 CLEAN = ["uniform", "nonuniform", "sparse"]
@@ -84,21 +86,7 @@ class Bench:
         self.shapes = self.folder / "shapes"
         self.cache = self.folder / "peers"
         self.cache.mkdir(parents=True, exist_ok=True)
-        self.python = self.environment()
-
-    def environment(self):
-        """The Python that has the peers of requirements.txt, or None with a word."""
-        venv, wanted = self.folder / "venv", SOURCE / "requirements.txt"
-        stamp = venv / "installed.txt"
-        if not stamp.exists() or stamp.read_text() != wanted.read_text():
-            try:
-                subprocess.run([sys.executable, "-m", "venv", venv], check=True)
-                subprocess.run([venv / "bin/pip", "install", "-q", "-r", wanted], check=True)
-                stamp.write_text(wanted.read_text())
-            except (subprocess.CalledProcessError, OSError) as problem:
-                print(f"accuracy: no peers in Python, {wanted.name} did not install ({problem})", file=sys.stderr)
-                return None
-        return venv / "bin/python"
+        self.python = python_of_peers(self.folder / "venv", SOURCE / "requirements.txt")
 
     def make_shapes(self, seed, names):
         """The files of a seed, made where one is missing or the generator's sources changed."""

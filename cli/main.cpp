@@ -26,6 +26,7 @@ constexpr Verb verbs[] = {
     {"normals", "IN -o OUT", "unit normals of a mesh, or of a cloud, oriented", normals},
     {"decimate", "IN -o OUT", "fewer triangles for the same surface, features kept", decimate},
     {"compare", "A B", "distances between two meshes or clouds, both ways", compare},
+    {"sample", "MESH -o OUT", "points on a mesh: Poisson-disk, nonuniform, random", sample},
     {"shape", "NAME -o OUT", "analytic surfaces with exact normals and curvature", shape},
     {"view", "IN -o OUT.png", "a picture of the curvature, or of another value", view},
     {"convert", "IN -o OUT", "another format; weld, triangulate", convert},

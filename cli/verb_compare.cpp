@@ -30,10 +30,10 @@ constexpr const char* about =
     "--bound adds an interval that the Hausdorff distance is certain to lie in, each way.";
 
 constexpr const char* examples =
-    "gaussmap compare original.ply simplified.ply          distances both ways\n"
-    "gaussmap compare original.ply simplified.ply --bound  and the Hausdorff distance\n"
-    "gaussmap compare mesh.obj scan.pcd                    a mesh and a cloud\n"
-    "gaussmap compare a.ply b.ply --samples 5000000 --json for a script";
+    "gaussmap compare before.ply after.ply           distances both ways\n"
+    "gaussmap compare before.ply after.ply --bound   and the Hausdorff distance\n"
+    "gaussmap compare mesh.obj scan.pcd              a mesh and a cloud\n"
+    "gaussmap compare a.ply b.ply --samples 5000000 --json   for a script";
 
 void declare(CommandLine& line, Options& o) {
     line.input(o.a, "A", "A mesh or a cloud: " + gaussmap::known_extensions() + "; - is standard input");
@@ -42,7 +42,7 @@ void declare(CommandLine& line, Options& o) {
     line.option("--samples", o.samples, "N",
                 "Points on the faces of each mesh, and a quarter as many on its edges; all vertices besides (default: "
                 "500000)")
-        ->check(whole_number(1, 1000000000));
+        ->check(whole_number(1, 100000000));
     line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)")->check(whole_number(0, INT64_MAX));
     line.group("Bounds");
     line.flag("--bound", o.bound, "Bound the Hausdorff distances with certainty");

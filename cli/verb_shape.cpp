@@ -185,6 +185,7 @@ struct Options {
     std::string name;
     std::map<std::string, std::string> texts;  ///< of the shape's options, as typed
     SurfaceOptions surface;
+    std::string noise_unit = "edge";
     Outputs outputs;
 };
 
@@ -232,9 +233,12 @@ void declare(CommandLine& line, Options& o) {
         ->check(number_of_at_least_zero());
     line.option(
             "--noise", o.surface.noise, "F",
-            "Then move them off it: standard deviation as a fraction of the mean edge length. Normals and curvature "
-            "stay those of the clean surface (default: 0)")
+            "Then move them off it: Gaussian in each coordinate, its standard deviation as a fraction of --noise-unit. "
+            "Normals and curvature stay those of the clean surface (default: 0)")
         ->check(number_of_at_least_zero());
+    line.option("--noise-unit", o.noise_unit, "U",
+                "edge: the mean edge length\ndiagonal: the diagonal of the bounding box (default: edge)")
+        ->check(one_of({"edge", "diagonal"}));
     line.option("--seed", line.common.seed, "N", "Of jitter and noise; the same seed makes the same file (default: 0)")
         ->check(whole_number(0, INT64_MAX));
     o.outputs.pictures = true;
@@ -286,6 +290,7 @@ Json parameters(const Shape& shape, const Values& values, const SurfaceOptions& 
     }
     out["jitter"] = options.jitter;
     out["noise"] = options.noise;
+    out["noise_unit"] = options.noise_unit == gaussmap::NoiseUnit::edge ? "edge" : "diagonal";
     out["seed"] = options.seed;
     return out;
 }
@@ -301,6 +306,7 @@ void shape(int argc, char** argv) {
     const Values values = values_of(chosen, o, line);
     o.outputs.check(line);
     o.surface.seed = line.common.seed;
+    o.surface.noise_unit = o.noise_unit == "edge" ? gaussmap::NoiseUnit::edge : gaussmap::NoiseUnit::diagonal;
 
     Stopwatch watch;
     const gaussmap::Geometry geometry = geometry_of(make(chosen, values, o.surface));
@@ -321,7 +327,8 @@ void shape(int argc, char** argv) {
                           count(geometry.face_count(), "face", "faces"));
     std::string words;
     for (const auto& [name, value] : report["parameters"].items())
-        words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name, number(value));
+        words += fmt::format("{}{} {}", words.empty() ? "" : ", ", name,
+                             value.is_string() ? value.get<std::string>() : number(value));
     table.add("with", words);
     for (const std::string& path : o.outputs.paths) table.add("wrote", path);
     present(report, o.name, table, line.common);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "arguments.h"
+#include "gaussmap/distance.h"
 #include "random.h"
 
 namespace gaussmap {
@@ -71,7 +72,9 @@ void store_point(Surface& surface, std::size_t vertex, const SurfacePoint& point
 
 void add_noise(Surface& surface, const SurfaceOptions& options) {
     if (options.noise == 0) return;
-    const double deviation = options.noise * mean_side(surface);
+    const double unit =
+        options.noise_unit == NoiseUnit::edge ? mean_side(surface) : box_diagonal(surface.vertices, surface.faces);
+    const double deviation = options.noise * unit;
     Random random(options.seed, 1);  // stream 0 is the jitter's
     for (double& coordinate : surface.vertices) coordinate += deviation * random.normal();
 }

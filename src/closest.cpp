@@ -48,7 +48,7 @@ void find_in_triangles(const TriangleTree& tree, Points queries, ClosestKernel k
 }  // namespace
 
 void check_surface(Points vertices, Triangles faces) {
-    if (vertices.empty()) throw std::invalid_argument("vertices is empty; there is nothing to measure a distance to");
+    if (vertices.empty()) throw std::invalid_argument("vertices is empty; a surface or a cloud needs some");
     check_faces(faces, vertices.count);
     constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
     if (faces.count > most)

@@ -55,9 +55,11 @@ SquarePoint spread_out(std::uint64_t step, std::uint64_t shift) {
     return {static_cast<double>(u >> 11) * 0x1p-53, static_cast<double>(v >> 11) * 0x1p-53};
 }
 
-Vec3 in_triangle(Vec3 a, Vec3 b, Vec3 c, SquarePoint at) {
-    if (at.u + at.v > 1) at = {1 - at.u, 1 - at.v};
-    return a + (at.u * (b - a) + at.v * (c - a));
+std::vector<double> area_ends(Points vertices, Triangles faces) {
+    return laid_out(faces.count, [&](std::size_t f) {
+        const Vec3 a = corner(vertices, faces, f, 0);
+        return length(cross(corner(vertices, faces, f, 1) - a, corner(vertices, faces, f, 2) - a));
+    });
 }
 
 SurfaceSamples surface_samples(Points vertices, Triangles faces, std::size_t samples, std::uint64_t seed,
@@ -72,10 +74,7 @@ SurfaceSamples surface_samples(Points vertices, Triangles faces, std::size_t sam
     const std::vector<double> lengths = laid_out(3 * faces.count, [&](std::size_t i) {
         return length(corner(vertices, faces, i / 3, i + 1) - corner(vertices, faces, i / 3, i));
     });
-    const std::vector<double> areas = laid_out(faces.count, [&](std::size_t f) {
-        const Vec3 a = corner(vertices, faces, f, 0);
-        return length(cross(corner(vertices, faces, f, 1) - a, corner(vertices, faces, f, 2) - a));
-    });
+    const std::vector<double> areas = area_ends(vertices, faces);
     made.counts.edges = lengths.back() > 0 ? (samples + 3) / 4 : 0;
     made.counts.faces = areas.back() > 0 ? samples : 0;
     const std::size_t first_on_edges = made.counts.vertices, first_on_faces = first_on_edges + made.counts.edges;
@@ -95,7 +94,7 @@ SurfaceSamples surface_samples(Points vertices, Triangles faces, std::size_t sam
                        [&](std::size_t i, std::size_t face, double) {
                            store(made.points.data() + 3 * (first_on_faces + i),
                                  in_triangle(corner(vertices, faces, face, 0), corner(vertices, faces, face, 1),
-                                             corner(vertices, faces, face, 2), spread_out(i, shift)));
+                                             corner(vertices, faces, face, 2), folded(spread_out(i, shift))));
                        });
     return made;
 }

@@ -29,7 +29,17 @@ struct SquarePoint {
 };
 SquarePoint spread_out(std::uint64_t step, std::uint64_t shift);
 
-/// Fold the unit square onto the triangle: a + u (b − a) + v (c − a), even by area.
-Vec3 in_triangle(Vec3 a, Vec3 b, Vec3 c, SquarePoint at);
+/// The unit square folded onto its half u + v ≤ 1.
+inline SquarePoint folded(SquarePoint at) {
+    return at.u + at.v > 1 ? SquarePoint{1 - at.u, 1 - at.v} : at;
+}
+
+/// a + u (b − a) + v (c − a): even by area where the square is sampled evenly and folded.
+inline Vec3 in_triangle(Vec3 a, Vec3 b, Vec3 c, SquarePoint at) {
+    return a + (at.u * (b - a) + at.v * (c - a));
+}
+
+/// Ends of the faces laid end to end, each as long as twice its area.
+std::vector<double> area_ends(Points vertices, Triangles faces);
 
 }  // namespace gaussmap

@@ -31,5 +31,5 @@ struct Candidates {
 };
 
 /// `count` vertices of the candidates, no two near each other, in random order: 5·count of them drawn by area, then
-/// weighted sample elimination (Yuksel 2015, "Sample elimination for generating Poisson disk sample sets").
+/// sample elimination.
 std::vector<std::size_t> poisson_disk(const Candidates& candidates, std::size_t count, Dice& dice);

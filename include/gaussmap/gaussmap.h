@@ -8,6 +8,7 @@
 //   neighbors.h  k nearest neighbours, fans, points without repetitions
 //   distance.h   exact closest points; distances of surfaces and clouds, sampled or bounded
 //   decimate.h   fewer triangles for the same surface
+//   sampling.h   points on a surface: at random, Poisson-disk
 //   surfaces.h   analytic surfaces with exact normals and curvature
 //   inspect.h    boundary, non-manifold, degenerate, duplicate: what is in a file
 //   picture.h    a picture of the result, and its PNG
@@ -29,5 +30,6 @@
 #include "gaussmap/neighbors.h"
 #include "gaussmap/normals.h"
 #include "gaussmap/picture.h"
+#include "gaussmap/sampling.h"
 #include "gaussmap/surfaces.h"
 #include "gaussmap/types.h"

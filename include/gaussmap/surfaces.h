@@ -18,17 +18,24 @@ struct Surface {
     std::vector<double> density;      ///< k1² + k2², 1/length²
 };
 
+/// What noise is relative to.
+enum class NoiseUnit {
+    edge,      ///< the mean side of the faces
+    diagonal,  ///< the diagonal of the box of the vertices
+};
+
 struct SurfaceOptions {
     /// Vertices are moved along the surface (they stay on it, with exact normals and curvature there) by a
     /// uniformly random step of up to this fraction of the local edge length in each tangential direction (measured on
     /// a grid as a fraction of its steps, on an icosphere before it is stretched); 0.25 makes a mesh irregular without
     /// folding it. Vertices on an open border stay.
     double jitter = 0;
-    /// Then all vertices are displaced by Gaussian noise of this standard deviation in each coordinate, relative to the
-    /// mean side of the faces. Normals and curvature stay those of the clean surface.
+    /// Then all vertices are displaced by Gaussian noise of this standard deviation in each coordinate, relative to
+    /// `noise_unit`. Normals and curvature stay those of the clean surface.
     double noise = 0;
     /// Same seed, same numbers drawn, on every machine and for any number of threads.
     std::uint64_t seed = 0;
+    NoiseUnit noise_unit = NoiseUnit::edge;
 };
 
 /// Sphere of radius r from an icosahedron whose faces are split in four `subdivisions` times (20·4^s faces),

@@ -103,7 +103,7 @@ def test_reads_one_of_both_from_standard_input(gaussmap, tmp_path):
         ("a.off a.off a.off", 2, "unexpected argument 'a.off'; write: gaussmap compare A B [options]"),
         ("- -", 2, "compare: A and B cannot both be standard input; name a file for one"),
         ("a.off a.off --bounds", 2, "unknown option '--bounds'; did you mean '--bound'?"),
-        ("a.off a.off --samples 0", 2, "--samples: '0' is not a whole number from 1 to 1000000000"),
+        ("a.off a.off --samples 0", 2, "--samples: '0' is not a whole number from 1 to 100000000"),
         ("a.off a.off --tolerance 0", 2, "--tolerance: '0' is not a number above 0"),
         ("a.off none.off", 3, None),
         ("nan.off a.off", 3, "nan.off: vertices[0], of faces[0], is not finite; leave it out first"),

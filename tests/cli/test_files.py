@@ -32,7 +32,7 @@ def test_every_shape_by_default(gaussmap, name):
 
 def test_shape_carries_its_truth_in_double(gaussmap, tmp_path):
     report = gaussmap("shape", "torus", "--major", 2, "--minor", 0.5, "--grid", "12x9", "-o", "t.ply", "--json").json
-    assert report["parameters"] == {"around": 12, "across": 9, "major": 2, "minor": 0.5, "jitter": 0, "noise": 0, "seed": 0}
+    assert report["parameters"] == {"around": 12, "across": 9, "major": 2, "minor": 0.5, "jitter": 0, "noise": 0, "noise_unit": "edge", "seed": 0}
     elements, types = ply.read(tmp_path / "t.ply")
     vertex = elements["vertex"]
     for name in ("x", "y", "z", "nx", "ny", "nz", "exact_density", "k1", "k2"):
@@ -49,8 +49,21 @@ def test_shape_carries_its_truth_in_double(gaussmap, tmp_path):
 
 def test_shape_parameters(gaussmap):
     report = gaussmap("shape", "ellipsoid", "--axes", "3,2,1", "--subdivisions", 2, "-o", "e.ply", "--json").json
-    assert report["parameters"] == {"subdivisions": 2, "a": 3, "b": 2, "c": 1, "jitter": 0, "noise": 0, "seed": 0}
+    assert report["parameters"] == {"subdivisions": 2, "a": 3, "b": 2, "c": 1, "jitter": 0, "noise": 0, "noise_unit": "edge", "seed": 0}
     assert gaussmap("info", "e.ply", "--json").json["box"]["maximum"][0] == pytest.approx(3, rel=0.02)
+
+
+def test_noise_of_the_edge_or_of_the_diagonal(gaussmap):
+    def off(*options):
+        gaussmap("shape", "sphere", "--subdivisions", 4, "-o", "s.ply", "--noise", 0.01, *options)
+        gaussmap("convert", "s.ply", "-o", "p.xyz")
+        gaussmap("shape", "sphere", "--subdivisions", 7, "-o", "truth.ply")
+        return gaussmap("compare", "p.xyz", "truth.ply", "--json", "--samples", 1).json["forward"]["rms"]
+
+    assert off("--noise-unit", "diagonal") == pytest.approx(0.01, rel=0.1)
+    assert off("--noise-unit", "edge") == pytest.approx(0.01 * 0.0758 / (2 * math.sqrt(3)), rel=0.1)
+    run = gaussmap("shape", "sphere", "-o", "s.ply", "--noise-unit", "edges")
+    run.fails(2, "--noise-unit: 'edges' is not one of edge, diagonal; did you mean 'edge'?")
 
 
 def test_seed_and_threads(gaussmap, tmp_path):

@@ -6,14 +6,15 @@ import subprocess
 
 import pytest
 
-VERBS = ["curvature", "normals", "compare", "shape", "view", "convert", "info", "decimate"]
+VERBS = ["curvature", "normals", "compare", "sample", "shape", "view", "convert", "info", "decimate"]
 OPTIONS = {
     "curvature": "--as --normals --estimator --k --degree --orient --tensor --confidence --choice --truth "
     "--color --output --format --ascii",
     "normals": "--as --method --k --degree --orient --output --format --ascii",
     "compare": "--samples --bound --tolerance",
+    "sample": "--count --method --output --format --ascii",
     "shape": "--subdivisions --radius --major --minor --grid --p --q --scale --axes --amplitude --frequency "
-    "--wavelength --width --depth --height --jitter --noise --output --format --ascii",
+    "--wavelength --width --depth --height --jitter --noise --noise-unit --output --format --ascii",
     "view": "--field --as --range --size --views --from --up --output",
     "convert": "--weld --triangulate --output --format --ascii",
     "info": "",

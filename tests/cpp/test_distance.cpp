@@ -138,8 +138,7 @@ TEST(ClosestIndex, SaysWhatItRefuses) {
     EXPECT_EQ(refusal([&] { ClosestIndex(bad, shape.faces); }),
               "vertices[2], of faces[0], is not finite; leave it out first");
     EXPECT_EQ(refusal([&] { ClosestIndex index(bad); }), "vertices[2] is not finite; leave it out first");
-    EXPECT_EQ(refusal([&] { ClosestIndex index{Points()}; }),
-              "vertices is empty; there is nothing to measure a distance to");
+    EXPECT_EQ(refusal([&] { ClosestIndex index{Points()}; }), "vertices is empty; a surface or a cloud needs some");
     const std::vector<std::int32_t> outside = {0, 1, 4};
     EXPECT_EQ(refusal([&] { ClosestIndex(shape.vertices, outside); }), "faces[0][2] = 4 is outside [0, 4)");
     const ClosestIndex index(shape.vertices, shape.faces);
@@ -278,7 +277,7 @@ TEST(SurfaceDistance, SaysWhichOneItRefuses) {
     EXPECT_EQ(refusal([&] { surface_distance(a.vertices, a.faces, bad, a.faces); }),
               "b: vertices[0], of faces[0], is not finite; leave it out first");
     EXPECT_EQ(refusal([&] { surface_distance(Points(), {}, a.vertices, a.faces); }),
-              "a: vertices is empty; there is nothing to measure a distance to");
+              "a: vertices is empty; a surface or a cloud needs some");
 }
 
 TEST(SurfaceDistance, CanBeCancelled) {

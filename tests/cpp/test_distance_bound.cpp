@@ -152,7 +152,7 @@ TEST(HausdorffBound, SaysWhereItGaveUp) {
               }),
               "hausdorff_bound: tolerance = -1 must be finite and not negative");
     EXPECT_EQ(refusal([&] { hausdorff_bound(Points(), {}, index); }),
-              "vertices is empty; there is nothing to measure a distance to");
+              "vertices is empty; a surface or a cloud needs some");
     options.run.progress = [](double) { return false; };
     EXPECT_THROW(hausdorff_bound(a.vertices, a.faces, index, options), Cancelled);
 }

@@ -169,6 +169,21 @@ TEST_P(EverySurface, NoiseIsGaussianAndLeavesTheTruthAlone) {
     EXPECT_NEAR(fourth / n, 3, 5 * std::sqrt(96 / n) + 0.03);
 }
 
+TEST_P(EverySurface, NoiseRelativeToTheDiagonalIsTheSameScaled) {
+    const Surface clean = GetParam().make(jittered), edge = GetParam().make({0.25, 0.02, 7}),
+                  diagonal = GetParam().make({0.25, 0.02, 7, gaussmap::NoiseUnit::diagonal});
+    const gaussmap::Inspection found = gaussmap::inspect(clean.vertices, clean.faces);
+    double squares = 0, ratio = 0;
+    for (std::size_t i = 0; i < clean.vertices.size(); ++i) {
+        const double by_edge = edge.vertices[i] - clean.vertices[i];
+        squares += by_edge * by_edge;
+        ratio += by_edge * (diagonal.vertices[i] - clean.vertices[i]);
+    }
+    // The mean side counts an edge once for each of its faces.
+    EXPECT_NEAR(ratio / squares, found.diagonal / found.mean_edge, 0.02 * found.diagonal / found.mean_edge);
+    EXPECT_EQ(clean.normals, diagonal.normals);
+}
+
 TEST_P(EverySurface, DependsOnTheSeedAlone) {
     const Surface once = GetParam().make({0.25, 0.1, 7}), again = GetParam().make({0.25, 0.1, 7});
     EXPECT_EQ(once.vertices, again.vertices);
