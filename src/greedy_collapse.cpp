@@ -12,7 +12,7 @@ namespace gaussmap {
 namespace {
 
 /// How firmly the best position is held to the middle of the edge, where the quadric is flat.
-constexpr double pull = 1e-3;
+constexpr double pull = 1e-5;
 /// What an edge of length l costs on a plane, as a squared distance over l²: short edges go first there.
 constexpr double flat_cost = 1e-9;
 /// Costs are taken in steps of this ratio, and within a step the vertices in their order, which is that of space:

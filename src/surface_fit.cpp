@@ -34,22 +34,12 @@ class Walk {
     void look_around(std::int32_t v) {
         mesh_.for_corners(v, [&](std::int32_t c) { look(c / 3); });
     }
-    /// Faces that meet the closest point, and those across every side.
+    /// On to the faces around the nearest corner of the closest one, as long as one of them is closer.
     void descend() {
-        for (std::int32_t at = -1; at != face;) {
+        for (std::int32_t at = -1; at != face && !settled();) {
             at = face;
             const std::array<double, 3> w{hit.u, hit.v, hit.w};
-            const std::int32_t* v = &mesh_.vertex[3 * at];
-            const std::array<std::int32_t, 3> ends{v[0], v[1], v[2]};
-            const auto most = std::max_element(w.begin(), w.end()) - w.begin();
-            const int zeros = (w[0] <= 0) + (w[1] <= 0) + (w[2] <= 0);
-            if (zeros == 0) {
-                if (depth_ < 1)
-                    ++depth_;
-                else
-                    return;
-            }
-            look_around(ends[most]);
+            look_around(mesh_.vertex[3 * at + (std::max_element(w.begin(), w.end()) - w.begin())]);
         }
     }
 
@@ -57,9 +47,18 @@ class Walk {
     std::int32_t face = -1;
 
   private:
+    /// Further from every side of its face than from p, the closest point has no rival that does not fold back over it.
+    bool settled() const {
+        if (hit.u <= 0 || hit.v <= 0 || hit.w <= 0) return false;
+        const std::int32_t* v = &mesh_.vertex[3 * face];
+        const Vec3 a = mesh_.position[v[0]], b = mesh_.position[v[1]], c = mesh_.position[v[2]];
+        const double nn = squared(cross(b - a, c - a));
+        return hit.squared * squared(c - b) < hit.u * hit.u * nn && hit.squared * squared(a - c) < hit.v * hit.v * nn &&
+               hit.squared * squared(b - a) < hit.w * hit.w * nn;
+    }
+
     const RingMesh& mesh_;
     Vec3 p_;
-    int depth_ = 0;
 };
 
 void keep(FitSamples& samples, std::size_t i, const Walk& walk) {
@@ -69,6 +68,13 @@ void keep(FitSamples& samples, std::size_t i, const Walk& walk) {
 }
 
 }  // namespace
+
+void assign_around(const RingMesh& mesh, FitSamples& samples, std::size_t i, std::int32_t v) {
+    Walk walk(mesh, samples.point[i]);
+    walk.look_around(v);
+    walk.descend();
+    keep(samples, i, walk);
+}
 
 void assign(const RingMesh& mesh, FitSamples& samples, const Execution& run) {
     for_blocks(samples.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {

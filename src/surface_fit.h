@@ -51,6 +51,8 @@ FitSamples samples_of(const std::vector<Vec3>& positions, const std::vector<std:
 
 /// Find the closest faces again, walking from those that were.
 void assign(const RingMesh& coarse, FitSamples& samples, const Execution& run);
+/// The same for one sample, from the faces around a vertex.
+void assign_around(const RingMesh& coarse, FitSamples& samples, std::size_t sample, std::int32_t vertex);
 
 /// Move the free vertices of the coarse mesh.
 void move_vertices(RingMesh& coarse, FitSamples& samples, const FitNorm& norm, const Execution& run);

@@ -55,6 +55,8 @@ std::size_t flip_sides(RingMesh& mesh, FitSamples& samples, const FitNorm& norm)
             continue;
         mesh.flip(corner, twin);
         done[f] = done[g] = true;
+        for (const std::int32_t face : {f, g})
+            rows.for_each(face, [&](std::int32_t k) { assign_around(mesh, samples, static_cast<std::size_t>(k), a); });
         ++flips;
     }
     return flips;

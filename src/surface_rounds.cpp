@@ -43,11 +43,7 @@ void bring_nearer(RingMesh& coarse, const DecimationInput& in, const std::vector
         move_vertices(coarse, samples, norm, run);
         assign(coarse, samples, run);
         flip_sides(coarse, samples, norm);
-        assign(coarse, samples, run);
-        if (round < last_swaps) {
-            swap_vertices(coarse, samples, norm, swap_share);
-            assign(coarse, samples, run);
-        }
+        if (round < last_swaps) swap_vertices(coarse, samples, norm, swap_share);
         if (run.progress && !run.progress((round + 1.0) / (rounds + 1))) throw Cancelled();
     }
     if (objective == DecimationObjective::rms) return;

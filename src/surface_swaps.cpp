@@ -54,15 +54,20 @@ class Swaps {
             const std::int32_t twin = mesh_.twin(collapse.corner);
             if (twin < 0) continue;
             touch(a), touch(b);
-            gone_samples_.clear();
-            for (const std::int32_t f : {collapse.corner / 3, twin / 3})
-                rows_.for_each(f, [&](std::int32_t k) { gone_samples_.push_back(k); });
+            displaced_.clear();
+            const auto gather = [&](std::int32_t c) {
+                rows_.for_each(c / 3, [&](std::int32_t k) { displaced_.push_back(k); });
+            };
+            mesh_.for_corners(a, gather);
+            mesh_.for_corners(b, gather);
             const std::int32_t face = collapse.corner / 3, twin_face = twin / 3;
             const std::int32_t stays = mesh_.kind[b] > mesh_.kind[a] ? b : a, goes = stays == a ? b : a;
             mesh_.collapse(stays, goes, p);
-            const std::int32_t any = mesh_.first[stays] / 3;
-            for (const std::int32_t k : gone_samples_) samples_.face[k] = any;
+            reassign(stays);
+            displaced_.clear();
+            gather(split), gather(mesh_.twin(split));
             split_at(split, goes, face, twin_face);
+            reassign(goes);
             ++next_split, ++swaps;
         }
         return swaps;
@@ -196,6 +201,10 @@ class Swaps {
                astray(mesh_.position[b], samples_.anchor[b], area_b);
     }
 
+    void reassign(std::int32_t v) {
+        for (const std::int32_t k : displaced_) assign_around(mesh_, samples_, static_cast<std::size_t>(k), v);
+    }
+
     bool untouched_around(std::int32_t v) const {
         bool untouched = !touched_[v];
         mesh_.for_corners(v, [&](std::int32_t c) {
@@ -280,7 +289,7 @@ class Swaps {
     FitNorm norm_;
     FaceSamples rows_;
     std::vector<bool> touched_;
-    std::vector<std::int32_t> gone_samples_, around_;
+    std::vector<std::int32_t> displaced_, around_;
     std::vector<std::pair<Vec3, Vec3>> ring_;
 };
 
