@@ -194,7 +194,7 @@ void move_vertices(RingMesh& mesh, FitSamples& samples, const FitNorm& norm, con
 }
 
 FitSamples samples_of(const std::vector<Vec3>& positions, const std::vector<std::int32_t>& corners,
-                      const std::vector<std::int32_t>& joined, const RingMesh& coarse, int level) {
+                      const std::vector<std::int32_t>& joined, const RingMesh& coarse) {
     FitSamples out;
     const std::size_t n = positions.size();
     out.point = positions;
@@ -202,21 +202,12 @@ FitSamples samples_of(const std::vector<Vec3>& positions, const std::vector<std:
     std::vector<std::int32_t> start = joined;
     for (std::size_t c = 0; c < corners.size(); c += 3) {
         const Vec3 a = positions[corners[c]], b = positions[corners[c + 1]], d = positions[corners[c + 2]];
+        // Exact for quadratics: 1/12 a corner, 3/4 at the centre.
         const double area = 0.5 * length(cross(b - a, d - a));
-        const double share = level == 0 ? 1. / 3 : level == 1 ? 1. / 12 : 1. / 27;
-        for (int k = 0; k < 3; ++k) out.area[corners[c + k]] += share * area;
-        if (level >= 1) {
-            out.point.push_back(1. / 3 * (a + b + d));
-            out.area.push_back((level == 1 ? 3. / 4 : 2. / 9) * area);
-            start.push_back(joined[corners[c]]);
-        }
-        if (level >= 2)
-            for (int k = 0; k < 3; ++k) {
-                const Vec3 x = k == 0 ? a : k == 1 ? b : d, y = k == 0 ? b : k == 1 ? d : a;
-                out.point.push_back(0.45 * x + 0.45 * y + 0.1 * (k == 0 ? d : k == 1 ? a : b));
-                out.area.push_back(2. / 9 * area);
-                start.push_back(joined[corners[c + k]]);
-            }
+        for (std::size_t k = 0; k < 3; ++k) out.area[corners[c + k]] += area / 12;
+        out.point.push_back(1.0 / 3 * (a + b + d));
+        out.area.push_back(0.75 * area);
+        start.push_back(joined[corners[c]]);
     }
     out.face.assign(out.point.size(), -1);
     out.weights.resize(out.point.size());

@@ -44,10 +44,10 @@ struct FitNorm {
     double cost(double squared_distance) const { return squared_distance * weight(squared_distance); }
 };
 
-/// Samples of a surface: its vertices, its faces' centres from level 1, three more points a face from level 2.
-/// \param joined  the vertex of the coarse mesh that each vertex of the fine one joined.
+/// Samples of a surface: its vertices and its faces' centres. Vertices alone fitted 20 % worse even where there were 25
+/// of them a face. \param joined  the vertex of the coarse mesh that each vertex of the fine one joined.
 FitSamples samples_of(const std::vector<Vec3>& positions, const std::vector<std::int32_t>& corners,
-                      const std::vector<std::int32_t>& joined, const RingMesh& coarse, int level);
+                      const std::vector<std::int32_t>& joined, const RingMesh& coarse);
 
 /// Find the closest faces again, walking from those that were.
 void assign(const RingMesh& coarse, FitSamples& samples, const Execution& run);

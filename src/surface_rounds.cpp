@@ -15,11 +15,6 @@ constexpr int rounds = 7;
 constexpr int last_swaps = 5;        ///< rounds that swap vertices; the others let the fit settle
 constexpr double swap_share = 0.05;  ///< of the vertices, at most, in one round
 
-/// Samples that make some ten a face of the coarse mesh, or the vertices alone where they do.
-int level_of(std::size_t coarse_faces, std::size_t vertices) {
-    return vertices >= 20 * coarse_faces ? 0 : 1;
-}
-
 double rms(const FitSamples& samples) {
     double sum = 0, area = 0;
     for (std::size_t i = 0; i < samples.point.size(); ++i)
@@ -32,8 +27,7 @@ double rms(const FitSamples& samples) {
 void bring_nearer(RingMesh& coarse, const DecimationInput& in, const std::vector<std::int32_t>& joined,
                   DecimationObjective objective, const Execution& run) {
     if (coarse.face_count() == 0) return;
-    FitSamples samples =
-        samples_of(in.positions, in.corners, joined, coarse, level_of(coarse.face_count(), in.positions.size()));
+    FitSamples samples = samples_of(in.positions, in.corners, joined, coarse);
     FitNorm norm;
     for (int round = 0; round < rounds; ++round) {
         const double size = rms(samples);
