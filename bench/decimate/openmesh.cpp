@@ -40,8 +40,8 @@ int main(int argc, char** argv) {
         const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         const std::string path = std::string(argv[2]) + "openmesh_" + argv[i] + ".off";
         if (!OpenMesh::IO::write_mesh(mesh, path, OpenMesh::IO::Options::Default, 17)) return 1;
-        std::printf("openmesh\t%d.%d\tModQuadric, ModNormalFlipping\t%s\t%zu\t%.4f\t%s\n", OM_GET_MAJ, OM_GET_MIN,
-                    argv[i], mesh.n_faces(), seconds, path.c_str());
+        std::printf("openmesh\t%d.%d\tModQuadric, ModNormalFlipping\t%s\t%zu\t%.4f\t%s\n", OM_VERSION >> 16,
+                    OM_VERSION >> 8 & 0xff, argv[i], mesh.n_faces(), seconds, path.c_str());
         std::fflush(stdout);
     }
 }
