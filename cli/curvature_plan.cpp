@@ -10,13 +10,17 @@ using gaussmap::Estimator;
 constexpr Estimator estimators[] = {Estimator::automatic, Estimator::dirichlet, Estimator::corrected,
                                     Estimator::regression, Estimator::jet};
 
+bool weighs_faces(const std::string& normals) {
+    return normals == "max" || normals == "angle" || normals == "area";
+}
+
 bool fits_plane(const std::string& normals) {
     return normals == "pca" || normals == "wpca";
 }
 
 /// Options that the other kind alone understands. \throw Failure (wrong usage)
 void refuse_other_kind(const CurvatureOptions& o, bool mesh) {
-    const bool for_meshes = o.normals == "max" || o.normals == "angle" || o.normals == "area";
+    const bool for_meshes = weighs_faces(o.normals);
     const bool for_clouds = fits_plane(o.normals) || o.normals == "jet";
     if (mesh && for_clouds)
         throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for clouds and {} is a mesh; use auto, file, "
@@ -26,10 +30,6 @@ void refuse_other_kind(const CurvatureOptions& o, bool mesh) {
         throw Failure(Exit::wrong_usage, fmt::format("--normals {} is for meshes and {} is taken as a cloud; use auto, "
                                                      "file, estimate, pca, wpca or jet",
                                                      o.normals, o.input));
-    if (mesh && (o.estimator == "regression" || o.estimator == "jet"))
-        throw Failure(Exit::wrong_usage, fmt::format("--estimator {} is for clouds and {} is a mesh; use auto, "
-                                                     "dirichlet or corrected, or --as cloud",
-                                                     o.estimator, o.input));
     if (!mesh && o.estimator == "corrected")
         throw Failure(Exit::wrong_usage, fmt::format("--estimator corrected is for meshes and {} is taken as a cloud; "
                                                      "use auto, dirichlet, regression or jet",
@@ -65,8 +65,12 @@ Estimator estimator_for(const CurvatureOptions& o, const CommandLine& line, bool
 
 void plan_mesh(const CurvatureOptions& o, CurvaturePlan& plan) {
     using gaussmap::NormalWeights;
-    const bool chosen = o.normals == "angle" || o.normals == "area";
-    plan.normals = chosen ? o.normals : "max";
+    const bool chosen = weighs_faces(o.normals);
+    plan.of_mesh.k = o.k;
+    plan.of_mesh.degree = o.degree != 0 ? o.degree : 4;
+    plan.mesh_normals = chosen && plan.estimator() == Estimator::regression;
+    const bool fitted = plan.estimator() == Estimator::regression && !chosen;
+    plan.normals = fitted ? fmt::format("jet {}", plan.of_mesh.degree) : chosen ? o.normals : "max";
     plan.of_mesh.weights = o.normals == "angle"  ? NormalWeights::angle
                            : o.normals == "area" ? NormalWeights::area
                                                  : NormalWeights::max;
@@ -86,28 +90,39 @@ void plan_cloud(const CurvatureOptions& o, CurvaturePlan& plan) {
     plan.normals = fits_plane(o.normals) ? o.normals : fmt::format("jet {}", plan.of_cloud.degree);
 }
 
-/// Notes of options that were given and are not used, and of signs.
-void note_what_is_lost(const CurvatureOptions& o, const CommandLine& line, CurvaturePlan& plan) {
+void note_unused(const CommandLine& line, CurvaturePlan& plan, const char* name, bool used, const char* why) {
+    if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
+}
+
+/// Notes of options that were given for a mesh and are not used.
+void note_lost_on_mesh(const CommandLine& line, CurvaturePlan& plan) {
     const Estimator estimator = plan.estimator();
-    const bool fitted = !plan.mesh && !plan.file_normals, automatic = plan.automatic_cloud();
-    const bool jet = !plan.mesh && estimator == Estimator::jet;
+    const bool jet = estimator == Estimator::jet, regression = estimator == Estimator::regression;
+    const bool automatic = estimator == Estimator::automatic, given = plan.file_normals || plan.mesh_normals;
+    const char* why = automatic ? "--estimator auto chooses for itself" : "it is for --estimator jet and regression";
+    note_unused(line, plan, "--k", jet || regression, why);
+    note_unused(line, plan, "--orient", false, "this is a mesh");
+    note_unused(line, plan, "--degree", jet || (regression && !given), regression ? "the normals are not fitted" : why);
+}
+
+/// Notes of options that were given for a cloud and are not used, and of signs.
+void note_lost_on_cloud(const CurvatureOptions& o, const CommandLine& line, CurvaturePlan& plan) {
+    const Estimator estimator = plan.estimator();
+    const bool fitted = !plan.file_normals, automatic = estimator == Estimator::automatic;
+    const bool jet = estimator == Estimator::jet;
     const bool turned = fitted && estimator == Estimator::dirichlet;
-    const auto unused = [&](const char* name, bool used, const char* why) {
-        if (line.given(name) && !used) plan.notes.push_back(fmt::format("{} is not used: {}", name, why));
-    };
-    const char* why = plan.mesh   ? "this is a mesh"
-                      : automatic ? "--estimator auto chooses for itself"
-                                  : "the normals come from the file";
-    unused("--k", !plan.mesh && !automatic, why);
-    unused("--orient", turned, fitted && !automatic ? "it is for --estimator dirichlet" : why);
-    unused("--degree", jet || (fitted && !automatic && !fits_plane(o.normals)),
-           fitted && !automatic ? "a plane is fitted" : why);
+    const char* why = automatic ? "--estimator auto chooses for itself" : "the normals come from the file";
+    note_unused(line, plan, "--k", !automatic, why);
+    note_unused(line, plan, "--orient", turned, fitted && !automatic ? "it is for --estimator dirichlet" : why);
+    note_unused(line, plan, "--degree", jet || (fitted && !automatic && !fits_plane(o.normals)),
+                fitted && !automatic ? "a plane is fitted" : why);
     if (automatic && o.normals == "file")
         plan.notes.push_back("--normals file tells the signs alone: --estimator auto fits its own");
     else if (automatic)
-        unused("--normals", o.normals == "auto" || o.normals == "estimate", why);
+        note_unused(line, plan, "--normals", o.normals == "auto" || o.normals == "estimate", why);
     else
-        unused("--normals", !jet || (!fits_plane(o.normals) && o.normals != "jet"), "the jet has a normal of its own");
+        note_unused(line, plan, "--normals", !jet || (!fits_plane(o.normals) && o.normals != "jet"),
+                    "the jet has a normal of its own");
     if (o.tensor && fitted && !(turned && o.orient == "mst"))
         plan.notes.push_back(
             fmt::format("each point has its own normal's side, so the signs of k1, k2, mean and shape_index "
@@ -129,7 +144,7 @@ void CurvatureOptions::declare(CommandLine& line) {
     line.option("--normals", normals, "N",
                 "auto: those of the file if it has any, else estimate\n"
                 "file: those of the file\n"
-                "estimate: meshes max, clouds jet of degree 4\n"
+                "estimate: clouds and --estimator regression jet of degree 4, else max\n"
                 "max, angle, area: meshes; weights of the faces around a vertex\n"
                 "pca, wpca, jet: clouds; a fitted plane, the same with near points weighing more, a fitted polynomial "
                 "(default: auto)")
@@ -138,20 +153,23 @@ void CurvatureOptions::declare(CommandLine& line) {
             "--estimator", estimator, "E",
             "dirichlet: energy of the normals (Chen 2023)\n"
             "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
-            "regression: least squares of the differences of neighbours' normals; clouds\n"
-            "jet: curvature of a fitted polynomial, which needs no normals; clouds\n"
+            "regression: least squares of the differences of neighbours' normals\n"
+            "jet: curvature of a fitted polynomial, which needs no normals\n"
             "auto: what suits each vertex or point best; on clouds surfaces fitted to the points, where normals tell "
             "signs alone (default: clouds auto, unless --k, --degree, --orient or --normals ask for normals of some "
             "kind; else dirichlet)")
         ->check(one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
-    line.group("Clouds");
-    line.option("--k", k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20; auto chooses)")
+    line.group("Fits and clouds");
+    line.option(
+            "--k", k, "N",
+            "Nearest neighbours of a point, 3 to 1000; of a vertex, along edges, for --estimator jet and regression "
+            "(default: 20; auto chooses)")
         ->check(whole_number(3, 1000));
     line.option("--degree", degree, "N",
                 "Degree of the jet, 1 to 4, from 2 for --estimator jet (default: 2 for --normals jet, else 4)")
         ->check(whole_number(1, 4));
     line.option("--orient", orient, "O",
-                "How estimated normals are made to agree. local: around each point\n"
+                "Clouds: how estimated normals are made to agree. local: around each point\n"
                 "mst: along a spanning tree of the whole cloud\n"
                 "none: not at all (default: local)")
         ->check(one_of({"local", "mst", "none"}));
@@ -190,13 +208,16 @@ CurvaturePlan plan_curvature(const CurvatureOptions& o, const CommandLine& line,
         plan_mesh(o, plan);
     else
         plan_cloud(o, plan);
-    if (plan.automatic_cloud())
+    if (plan.estimator() == Estimator::automatic)
         plan.normals = "fitted";
-    else if (!plan.mesh && plan.estimator() == Estimator::jet)
-        plan.normals = fmt::format("jet {}", plan.of_cloud.degree);
+    else if (plan.estimator() == Estimator::jet)
+        plan.normals = fmt::format("jet {}", plan.mesh ? plan.of_mesh.degree : plan.of_cloud.degree);
     else if (plan.file_normals)
         plan.normals = "file";
-    note_what_is_lost(o, line, plan);
+    if (plan.mesh)
+        note_lost_on_mesh(line, plan);
+    else
+        note_lost_on_cloud(o, line, plan);
     return plan;
 }
 

@@ -106,7 +106,7 @@ Json curvature_report(const CurvatureOptions& o, const CurvaturePlan& plan, cons
     report["normals"] = plan.normals;
     report["estimator"] = gaussmap::estimator_name(plan.estimator());
     const bool fans = !plan.mesh && !plan.automatic_cloud();
-    report["k"] = fans ? Json(o.k) : Json();
+    report["k"] = plan.takes_k() ? Json(o.k) : Json();
     report["orient"] = fans && !plan.file_normals ? Json(o.orient) : Json();
     report["threads"] = threads;
     if (plan.mesh) report["kappa"] = {{"sum", measured.kappa_sum}};
@@ -154,7 +154,7 @@ Table curvature_table(const Json& report) {
     table.add("duplicate", count(n("duplicates"), one, many) + " at the position of an earlier one");
     table.add("non-finite", count(n("non_finite"), one, many));
     if (!mesh && !report["boundary"].is_null()) table.add("boundary", count(n("boundary"), one, many));
-    if (!mesh && n("lowered") > 0) table.add("lower degree", count(n("lowered"), one, many));
+    if (n("lowered") > 0) table.add("lower degree", count(n("lowered"), one, many));
     where_there("truth", [&](const Json& part) { add_truth(table, part, one, many); });
     add_ending(table, report);
     return table;

@@ -37,16 +37,19 @@ constexpr const char* examples =
     "gaussmap curvature torus.ply --truth exact_density compare with the truth";
 
 Measured measure_mesh(const Geometry& geometry, const CurvaturePlan& plan) {
-    const std::vector<double> none;
+    const std::vector<double> own = plan.mesh_normals ? gaussmap::mesh_normals(geometry.vertices, geometry.faces,
+                                                                               plan.of_mesh.weights, plan.of_mesh.run)
+                                                      : std::vector<double>();
     auto result = gaussmap::mesh_curvature(geometry.vertices, geometry.faces,
-                                           plan.file_normals ? geometry.normals : none, plan.of_mesh);
+                                           plan.file_normals ? geometry.normals : own, plan.of_mesh);
     const gaussmap::DistinctPoints distinct = gaussmap::distinct_points(geometry.vertices);
     Measured out;
     out.counts = {{"undefined", result.undefined},
                   {"undefined_faces", result.undefined_faces},
                   {"degenerate_faces", result.degenerate_faces},
                   {"duplicates", distinct.duplicates},
-                  {"non_finite", distinct.non_finite}};
+                  {"non_finite", distinct.non_finite},
+                  {"lowered", result.lowered}};
     out.kappa_sum = result.kappa_sum;
     out.seconds_normals = result.seconds_normals;
     out.seconds_curvature = result.seconds_curvature;

@@ -29,6 +29,9 @@ constexpr double noise_part = 0.25;
 /// (relative variances, at most 1) are those of a shape too thin for its sampling.
 constexpr double scatter_part = 0.3;
 
+/// Steps of diffusion.
+constexpr int change_reach = 8, noise_reach = 15;
+
 constexpr int fits = 3;  ///< chord, monge, quadric
 
 /// What the first look found, an element each.
@@ -70,39 +73,82 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
     looks.scatter[i] = static_cast<float>(std::log(look.chord.density + std::numeric_limits<float>::min()));
 }
 
-Looks look_around(const Elements& elements, double scale, ElementGraph& graph, AutomaticCurvature& result,
-                  const Execution& run) {
-    Looks looks(elements.count);
-    std::vector<std::size_t> lowered_in(block_count(elements.count, Elements::block));
-    for_blocks(elements.count, Elements::block, run, [&](std::size_t block, std::size_t first, std::size_t last) {
-        std::vector<std::int32_t> rows((last - first) * wide_neighbors);
-        elements.neighbors(first, last, wide_neighbors, rows.data());
-        std::vector<Vec3> neighbors(wide_neighbors);
-        for (std::size_t i = first; i < last; ++i) {
-            const std::int32_t* row = rows.data() + (i - first) * wide_neighbors;
-            std::copy(row, row + ElementGraph::degree,
-                      graph.index.begin() + static_cast<std::ptrdiff_t>(i * ElementGraph::degree));
-            const Vec3 here = elements.position(i);
-            int count = 0;
-            for (; count < wide_neighbors && row[count] >= 0; ++count)
-                neighbors[count] = scale * (elements.position(static_cast<std::size_t>(row[count])) - here);
-            const FirstLook look = first_look(neighbors, count);
-            lowered_in[block] += look.lowered && finite(look.normal);
-            result.normal[i] = look.normal;
-            result.choice[i] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : 2);
-            keep(look, i, looks);
-        }
-    });
-    for (const std::size_t n : lowered_in) result.lowered += n;
+/// The neighbours of an element, put into a lane; how many there are.
+int gather(const Elements& elements, double scale, std::size_t i, const std::int32_t* row, std::size_t lane,
+           LanePatches& patches) {
+    const Vec3 here = elements.position(i);
+    int count = 0;
+    for (; count < wide_neighbors && row[count] >= 0; ++count) {
+        const Vec3 d = scale * (elements.position(static_cast<std::size_t>(row[count])) - here);
+        patches.d[count][0][lane] = d.x, patches.d[count][1][lane] = d.y, patches.d[count][2][lane] = d.z;
+    }
+    return count;
+}
 
-    for (auto& change : looks.change) diffuse(change, graph, 8, run);
-    for (auto* field : {&looks.residual, &looks.wide_residual}) diffuse(*field, graph, 15, run);
-    for (std::size_t i = 0; i < elements.count; ++i) {
+/// Some elements in a row, looked at by themselves.
+struct Tile {
+    std::size_t first, count;
+
+    /// An element's nearest in the tile, numbered from its first one.
+    void connect(std::size_t i, const std::int32_t* row, ElementGraph& graph) const {
+        std::int32_t* to = graph.index.data() + (i - first) * ElementGraph::degree;
+        for (std::size_t j = 0; j < ElementGraph::degree && row[j] >= 0; ++j) {
+            const auto other = static_cast<std::size_t>(row[j]);
+            if (other >= first && other - first < count) *to++ = static_cast<std::int32_t>(other - first);
+        }
+        // The rest stays −1.
+    }
+};
+
+/// Look at the elements of a block, in fours.
+void look_at_block(const Elements& elements, const Tile& tile, double scale, std::size_t first, std::size_t last,
+                   AutomaticCurvature& result, Looks& looks, std::size_t& lowered) {
+    std::vector<std::int32_t> rows((last - first) * wide_neighbors);
+    elements.neighbors(first, last, wide_neighbors, rows.data());
+    LanePatches patches;
+    for (std::size_t i = first; i < last; i += fit_lanes) {
+        FirstLook found[fit_lanes];
+        int counts[fit_lanes] = {};
+        const std::size_t end = std::min(i + fit_lanes, last);
+        const auto row = [&](std::size_t j) { return rows.data() + (j - first) * wide_neighbors; };
+        for (std::size_t j = i; j < end; ++j) counts[j - i] = gather(elements, scale, j, row(j), j - i, patches);
+        first_look(patches, counts, found);
+        for (std::size_t j = i; j < end; ++j) {
+            const FirstLook& look = found[j - i];
+            const std::size_t to = j - tile.first;
+            tile.connect(j, row(j), result.graph);
+            lowered += look.lowered && finite(look.normal);
+            result.normal[to] = look.normal;
+            result.choice[to] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : 2);
+            keep(look, to, looks);
+        }
+    }
+}
+
+/// \param result  of the tile's elements alone, and its graph too.
+Looks look_around(const Elements& elements, const Tile& tile, double scale, AutomaticCurvature& result,
+                  const Execution& run) {
+    Looks looks(tile.count);
+    std::vector<std::size_t> lowered(block_count(tile.count, Elements::block));
+    for_blocks(tile.count, Elements::block, run, [&](std::size_t block, std::size_t first, std::size_t last) {
+        look_at_block(elements, tile, scale, tile.first + first, tile.first + last, result, looks, lowered[block]);
+    });
+    for (const std::size_t n : lowered) result.lowered += n;
+
+    const ElementGraph& graph = result.graph;
+    // Of the deviations from the neighbours' mean, so that a smooth density's slope and bend do not pass for noise.
+    std::vector<float> smooth = looks.scatter;
+    diffuse(smooth, graph, 1, run);
+    for (std::size_t i = 0; i < tile.count; ++i) looks.scatter[i] -= smooth[i];
+    looks.scatter = roughness(looks.scatter, graph, run);
+    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter}, graph, noise_reach, run);
+    for (std::size_t i = 0; i < tile.count; ++i) {
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
     }
-    looks.scatter = roughness(looks.scatter, graph, run);
-    for (auto* field : {&looks.expected, &looks.scatter}) diffuse(*field, graph, 15, run);
+    static_assert(change_reach < noise_reach);
+    diffuse({&looks.change[0], &looks.change[1], &looks.change[2], &looks.expected}, graph, change_reach, run);
+    diffuse(looks.expected, graph, noise_reach - change_reach, run);
     return looks;
 }
 
@@ -149,38 +195,73 @@ std::vector<std::uint8_t> settle_looks(const Looks& looks, AutomaticCurvature& r
     return noisy;
 }
 
-}  // namespace
-
-AutomaticCurvature automatic_curvature(const Elements& elements, double size, const Execution& run) {
-    const std::size_t count = elements.count;
-    // Lengths of about one edge: squares of squares of densities stay far from the ends of the exponents.
-    const double edge = size / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
-    const double scale = std::ldexp(1.0, -std::ilogb(edge));
+/// What the first look finds in a tile, with lengths scaled; `noisy` where the ladder is needed.
+AutomaticCurvature looked_at(const Elements& elements, const Tile& tile, double scale, std::vector<std::uint8_t>& noisy,
+                             const Execution& run) {
     AutomaticCurvature result;
-    result.density.assign(count, std::numeric_limits<double>::quiet_NaN());
+    result.density.assign(tile.count, std::numeric_limits<double>::quiet_NaN());
     result.error = result.density;
-    result.normal.resize(count);
-    result.tensor.resize(count);
-    result.choice.resize(count);
-    ElementGraph graph;
-    graph.index.resize(count * ElementGraph::degree);
+    result.normal.resize(tile.count);
+    result.tensor.resize(tile.count);
+    result.choice.resize(tile.count);
+    result.graph.index.assign(tile.count * ElementGraph::degree, -1);
+    noisy = settle_looks(look_around(elements, tile, scale, result, run), result);
+    return result;
+}
 
-    std::vector<std::uint8_t> noisy =
-        settle_looks(look_around(elements, scale, graph, result, part_of(run, 0, 0.3)), result);
-    climb(elements, scale, graph, std::move(noisy), result, part_of(run, 0.3, 1));
-    if (run.progress && !run.progress(1)) throw Cancelled();
-
+/// To the elements' unit of length.
+void unscale(double scale, AutomaticCurvature& result) {
     const double scale2 = scale * scale;
-    result.graph = std::move(graph);
     result.unit = 1 / scale2;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < result.density.size(); ++i) {
         result.density[i] *= scale2;
         result.error[i] *= scale2;
         Symmetric3 unscaled;
         add(unscaled, scale, result.tensor[i]);
         result.tensor[i] = unscaled;
     }
+}
+
+/// What to scale lengths by, a power of two, so that they are of about one edge: squares of squares of densities stay
+/// far from the ends of the exponents.
+double scale_of(std::size_t count, double size) {
+    const double edge = size / std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1)));
+    return std::ldexp(1.0, -std::ilogb(edge));
+}
+
+}  // namespace
+
+AutomaticCurvature automatic_curvature(const Elements& elements, double size, const Execution& run) {
+    const double scale = scale_of(elements.count, size);
+    std::vector<std::uint8_t> noisy;
+    AutomaticCurvature result = looked_at(elements, {0, elements.count}, scale, noisy, part_of(run, 0, 0.3));
+    climb(elements, scale, result.graph, std::move(noisy), result, part_of(run, 0.3, 1));
+    if (run.progress && !run.progress(1)) throw Cancelled();
+    unscale(scale, result);
     return result;
+}
+
+std::size_t automatic_curvature(const Elements& elements, double size, const TakeMeasured& take, const Execution& run) {
+    constexpr std::size_t most = 65536;
+    static_assert(most % Elements::block == 0);
+    const double scale = scale_of(elements.count, size);
+    const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(elements.count); };
+    std::size_t lowered = 0, first = 0;
+    while (elements.count > most && first < elements.count) {
+        const Tile tile = {first, std::min(most, elements.count - first)};
+        std::vector<std::uint8_t> noisy;
+        AutomaticCurvature found =
+            looked_at(elements, tile, scale, noisy, part_of(run, fraction(first), fraction(first + tile.count)));
+        if (std::find(noisy.begin(), noisy.end(), 1) != noisy.end()) break;
+        unscale(scale, found);
+        for (std::size_t i = 0; i < tile.count; ++i) take(found, i, first + i);
+        lowered += found.lowered;
+        first += tile.count;
+    }
+    if (first == elements.count) return lowered;
+    const AutomaticCurvature found = automatic_curvature(elements, size, part_of(run, fraction(first), 1));
+    for (std::size_t i = 0; i < elements.count; ++i) take(found, i, i);
+    return found.lowered;
 }
 
 }  // namespace gaussmap

@@ -2,6 +2,9 @@
 // their nearest others, vertices of a mesh by their rings (docs/method.md, "Choosing from the data").
 #pragma once
 
+#include <cstddef>
+#include <functional>
+
 #include "element_graph.h"
 #include "fitted_curvature.h"
 
@@ -16,5 +19,14 @@ struct AutomaticCurvature : FittedCurvature {
 /// \param size  the diagonal of the elements' box, positive and finite.
 /// The same bits for any number of threads. Time O(n) fits of at least 24 neighbours; more only where there is noise.
 AutomaticCurvature automatic_curvature(const Elements& elements, double size, const Execution& run);
+
+/// Takes what was measured at an element: entry i of `found`.
+using TakeMeasured = std::function<void(const FittedCurvature& found, std::size_t i, std::size_t element)>;
+
+/// The same, handed out element by element, not always in order; the number of `lowered` ones. Many elements are looked
+/// at in tiles, of those that follow each other, and forgotten, as long as there is no noise; averages over the surface
+/// nearby end where tiles do, so elements that follow each other should be near each other. Memory 25 MB; where there
+/// is noise as much as for all at once.
+std::size_t automatic_curvature(const Elements& elements, double size, const TakeMeasured& take, const Execution& run);
 
 }  // namespace gaussmap

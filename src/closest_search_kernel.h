@@ -2,8 +2,10 @@
 // its set; nothing here may have external linkage but the entry that each defines, or the linker could pick a copy that
 // the machine cannot run. Every set rounds every operation alike.
 //
-// The leaf that was closest to the query before bounds the distance of the next one; what the bound leaves of the tree
-// is searched nearest boxes first.
+// Queries come in groups that are near each other. The first of a group is searched for from the root, nearest boxes
+// first; its distance bounds those of the others (triangle inequality), so that they share one list of the leaves that
+// can matter. Each query begins with the leaf that was closest to the one before. A group that is spread too widely,
+// its list too long, goes query by query.
 #pragma once
 
 #include "box_kernel.h"
@@ -55,9 +57,37 @@ struct Closest {
     std::uint32_t slot;
 };
 
+constexpr std::size_t group_queries = 16;
+constexpr int most_leaves = 64;
+
+/// The leaves that a group shares, and their boxes.
+struct NearLeaves {
+    int count;
+    std::uint32_t leaf[most_leaves];
+    std::int32_t first[most_leaves];
+    alignas(32) double low[3][most_leaves], high[3][most_leaves];
+};
+
 class Search {
   public:
     Search(const ClosestRoom& room, std::size_t query) : room_(room), q_(room.queries + 3 * query) {}
+
+    /// Among the leaves of a group.
+    Closest among(const NearLeaves& near, std::uint32_t start_leaf) {
+        scan(start_leaf);
+        const Box point = {{q_[0], q_[1], q_[2]}, {q_[0], q_[1], q_[2]}};
+        const double* const low[3] = {near.low[0], near.low[1], near.low[2]};
+        const double* const high[3] = {near.high[0], near.high[1], near.high[2]};
+        for (int i = 0; i < near.count; i += lanes) {
+            const Real gaps = gap(point, low, high, static_cast<std::size_t>(i));
+            unsigned hits = bits_of(all(below) * gaps <= all(best_.squared));
+            for (; hits; hits &= hits - 1) {
+                const int l = __builtin_ctz(hits);
+                if (i + l < near.count && worth(gaps[l], near.first[i + l])) scan(near.leaf[i + l]);
+            }
+        }
+        return best_;
+    }
 
     Closest find(std::uint32_t start_leaf) {
         scan(start_leaf);
@@ -127,15 +157,84 @@ void Search::visit(int level, std::size_t node) {
     }
 }
 
-void closest(const ClosestRoom& room, const std::int32_t* order, std::size_t count, double* squared_distance,
-             std::uint32_t* slot) {
-    std::uint32_t leaf = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+/// List the leaves within a bound of a box; false where they are too many.
+bool collect(const ClosestRoom& room, const Box& box, double bound, NearLeaves& near) {
+    std::uint32_t lists[2][most_leaves];
+    std::uint32_t *from = lists[0], *to = lists[1];
+    int count = 1;
+    from[0] = 0;
+    for (int level = room.level_count - 1; level >= 0; --level) {
+        int next = 0;
+        for (int i = 0; i < count; ++i) {
+            const Boxes& boxes = room.levels[level][from[i]];
+            const double* const low[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
+            const double* const high[3] = {boxes.high[0], boxes.high[1], boxes.high[2]};
+            unsigned hits = 0;
+            for (int c = 0; c < children; c += lanes)
+                hits |= bits_of(gap(box, low, high, static_cast<std::size_t>(c)) <= all(bound)) << c;
+            if (next + children > most_leaves) return false;
+            for (; hits; hits &= hits - 1) {
+                const int c = __builtin_ctz(hits);
+                if (level == 0) {
+                    for (int a = 0; a < 3; ++a)
+                        near.low[a][next] = boxes.low[a][c], near.high[a][next] = boxes.high[a][c];
+                    near.first[next] = boxes.first[c];
+                    near.leaf[next] = from[i] * children + static_cast<std::uint32_t>(c);
+                }
+                to[next++] = from[i] * children + static_cast<std::uint32_t>(c);
+            }
+        }
+        count = next;
+        std::uint32_t* const done = from;
+        from = to, to = done;
+    }
+    near.count = count;
+    for (int i = count; i % lanes != 0; ++i)  // the rest of the last register
+        for (int a = 0; a < 3; ++a) near.low[a][i] = __builtin_inf(), near.high[a][i] = -__builtin_inf();
+    return true;
+}
+
+/// Up to 16 queries; returns the leaf that the last of them is closest to.
+std::uint32_t closest_of_group(const ClosestRoom& room, const std::int32_t* order, std::size_t count,
+                               std::uint32_t leaf, double* squared_distance, std::uint32_t* slot) {
+    const auto answer = [&](std::size_t i, const Closest& found) {
         const auto query = static_cast<std::size_t>(order[i]);
-        const Closest found = Search(room, query).find(leaf);
         squared_distance[query] = found.squared;
         slot[query] = found.slot;
         leaf = found.slot / leaf_triangles;
+    };
+    const auto query = [&](std::size_t i) { return room.queries + 3 * static_cast<std::size_t>(order[i]); };
+    const Closest first = Search(room, static_cast<std::size_t>(order[0])).find(leaf);
+    answer(0, first);
+    Box box;
+    double spread = 0;
+    for (int a = 0; a < 3; ++a) box.low[a] = box.high[a] = query(0)[a];
+    for (std::size_t i = 1; i < count; ++i) {
+        double apart = 0;
+        for (int a = 0; a < 3; ++a) {
+            const double q = query(i)[a], d = q - query(0)[a];
+            if (q < box.low[a]) box.low[a] = q;
+            if (q > box.high[a]) box.high[a] = q;
+            apart += d * d;
+        }
+        if (apart > spread) spread = apart;
+    }
+    const double bound = __builtin_sqrt(spread) + __builtin_sqrt(first.squared);
+    NearLeaves near;
+    const bool shared = collect(room, box, bound * bound * (1 + 0x1p-40), near);
+    for (std::size_t i = 1; i < count; ++i) {
+        Search search(room, static_cast<std::size_t>(order[i]));
+        answer(i, shared ? search.among(near, leaf) : search.find(leaf));
+    }
+    return leaf;
+}
+
+void closest(const ClosestRoom& room, const std::int32_t* order, std::size_t count, double* squared_distance,
+             std::uint32_t* slot) {
+    std::uint32_t leaf = 0;
+    for (std::size_t i = 0; i < count; i += group_queries) {
+        const std::size_t size = count - i < group_queries ? count - i : group_queries;
+        leaf = closest_of_group(room, order + i, size, leaf, squared_distance, slot);
     }
 }
 

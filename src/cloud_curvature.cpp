@@ -123,8 +123,16 @@ void take_normals(Points normals, Work& work, const Execution& run) {
 /// The last stage: densities of fans whose normals are all there.
 void measure(const Work& work, const Chains& chains, CloudCurvature& result) {
     const bool align = !work.given && work.options.orientation == Orientation::local;
+    constexpr std::size_t ahead = 8;
     Neighborhood corners(work.k);
-    for (const Chains::One& fan : chains.fans) {
+    for (std::size_t f = 0; f < chains.fans.size(); ++f) {
+        const Chains::One& fan = chains.fans[f];
+        // Places of the input may be anywhere in memory.
+        if (f + ahead < chains.fans.size()) {
+            const std::size_t later = work.source(static_cast<std::size_t>(chains.fans[f + ahead].point));
+            __builtin_prefetch(&result.kappa[later], 1);
+            __builtin_prefetch(&result.density[later], 1);
+        }
         const auto i = static_cast<std::size_t>(fan.point), place = work.source(i);
         corners.gather(work.cloud, i, chains.corners.data() + fan.begin, fan.size);
         const Energy energy = fan_energy(corners, fan.closed, work.normals.data(), work.normal(i), align);
@@ -147,7 +155,7 @@ class BlockWork {
           search_(work.cloud.tree, work.k),
           rows_(work.spanning_tree() ? 0 : batch * work.k),
           around_(batch, Neighborhood(work.k)),
-          normal_of_(work.options.method, work.options.degree, work.k),
+          normals_of_(work.options.method, work.options.degree, work.k),
           fan_(work.k),
           chain_(work.k) {}
 
@@ -159,7 +167,7 @@ class BlockWork {
             find(i, end);
             lap.add_to(block_.seconds_neighbors);
             if (!work_.given)
-                for (std::size_t j = i; j < end; ++j) fit(around_[j - i], j);
+                for (std::size_t j = i; j < end; j += fit_lanes) fit(i, j, std::min(j + fit_lanes, end));
             lap.add_to(block_.seconds_normals);
             for (std::size_t j = i; j < end; ++j) build(around_[j - i], j);
         }
@@ -176,10 +184,14 @@ class BlockWork {
         for (std::size_t j = i; j < end; ++j) around_[j - i].gather(work_.cloud, j, rows + (j - i) * work_.k, work_.k);
     }
 
-    void fit(const Neighborhood& around, std::size_t i) {
-        const NormalFit::Result fitted = normal_of_(around);
-        store(work_.normals.data() + 3 * i, fitted.normal);
-        if (fitted.lowered) ++block_.lowered;
+    /// The normals of points [j, end) of the leaf that begins at i.
+    void fit(std::size_t i, std::size_t j, std::size_t end) {
+        NormalFit::Result results[fit_lanes];
+        normals_of_({around_.data() + (j - i), end - j}, {results, end - j});
+        for (std::size_t l = 0; l < end - j; ++l) {
+            store(work_.normals.data() + 3 * (j + l), results[l].normal);
+            if (results[l].lowered) ++block_.lowered;
+        }
     }
 
     void build(const Neighborhood& around, std::size_t i) {
@@ -203,7 +215,7 @@ class BlockWork {
     NeighborRows search_;
     std::vector<std::int32_t> rows_;
     std::vector<Neighborhood> around_;
-    NormalFit normal_of_;
+    NormalFit normals_of_;
     Fan fan_;
     std::vector<std::int32_t> chain_;
     Chains ready_;
@@ -248,23 +260,13 @@ void place_normals(const Work& work, CloudCurvature& result) {
     }
 }
 
-/// Less than a quadric has no curvature.
-void check_jet(const CloudCurvatureOptions& options) {
-    if (options.degree < 2)
-        throw std::invalid_argument("degree = " + std::to_string(options.degree) +
-                                    " has no curvature; estimator = jet takes 2 to 4");
-    if (options.k < 5)
-        throw std::invalid_argument("k = " + std::to_string(options.k) +
-                                    " is too small; estimator = jet takes at least 5 neighbours");
-}
-
 void check(Points points, Points normals, const CloudCurvatureOptions& options) {
     check_estimator(options.estimator, Input::cloud, options.confidence);
     if (options.k < 3)
         throw std::invalid_argument("k = " + std::to_string(options.k) +
                                     " is too small; a fan takes at least 3 neighbours");
     check_degree(options.degree);
-    if (options.estimator == Estimator::jet) check_jet(options);
+    if (options.estimator == Estimator::jet) check_jet(options.k, options.degree);
     if (!normals.empty()) check_count("normals", normals.count, points.count, "points");
 }
 

@@ -1,4 +1,6 @@
 // Normals of all points of a cloud.
+#include <algorithm>
+
 #include "check_cloud.h"
 #include "gaussmap/normals.h"
 #include "normal_fit.h"
@@ -14,14 +16,18 @@ CloudNormalsResult cloud_normals(Points points, const Neighbors& neighbors, cons
     result.normals.resize(3 * points.count);
     std::vector<std::size_t> undefined_in(block_count(points.count, grain)), lowered_in(undefined_in.size());
     for_blocks(points.count, grain, options.run, [&](std::size_t block, std::size_t i, std::size_t last) {
-        Neighborhood neighborhood(neighbors.k);
+        std::vector<Neighborhood> around(fit_lanes, Neighborhood(neighbors.k));
         NormalFit fit(options.method, options.degree, neighbors.k);
-        for (; i < last; ++i) {
-            neighborhood.gather(points, i, neighbors[i], neighbors.k);
-            const auto [normal, lowered] = fit(neighborhood);
-            if (!finite(normal)) ++undefined_in[block];
-            if (lowered) ++lowered_in[block];
-            store(result.normals.data() + 3 * i, normal);
+        NormalFit::Result results[fit_lanes];
+        for (; i < last; i += fit_lanes) {
+            const std::size_t count = std::min<std::size_t>(fit_lanes, last - i);
+            for (std::size_t j = 0; j < count; ++j) around[j].gather(points, i + j, neighbors[i + j], neighbors.k);
+            fit({around.data(), count}, {results, count});
+            for (std::size_t j = 0; j < count; ++j) {
+                if (!finite(results[j].normal)) ++undefined_in[block];
+                if (results[j].lowered) ++lowered_in[block];
+                store(result.normals.data() + 3 * (i + j), results[j].normal);
+            }
         }
     });
     for (const std::size_t count : undefined_in) result.undefined += count;

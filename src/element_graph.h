@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -41,6 +42,44 @@ inline void diffuse(std::vector<float>& field, const ElementGraph& graph, int ti
             }
         });
         std::swap(field, next);
+    }
+}
+
+/// The same of up to four fields together, in less time than one after the other; sums are of single precision.
+inline void diffuse(std::initializer_list<std::vector<float>*> fields, const ElementGraph& graph, int times,
+                    const Execution& run) {
+    constexpr std::size_t grain = 4096;
+    typedef float Floats __attribute__((vector_size(16)));
+    typedef std::int32_t Flags __attribute__((vector_size(16)));
+    const std::size_t count = graph.count();
+    std::vector<Floats> values(count), next(count);
+    std::size_t lane = 0;
+    for (const std::vector<float>* field : fields) {
+        for (std::size_t i = 0; i < count; ++i) values[i][lane] = (*field)[i];
+        ++lane;
+    }
+    for (int t = 0; t < times; ++t) {
+        for_blocks(count, grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
+            for (; i < last; ++i) {
+                Floats sum = {};
+                Flags terms = {};
+                const auto take = [&](Floats value) {
+                    const Flags finite = value - value == Floats{};
+                    sum += (Floats)((Flags)value & finite);
+                    terms -= finite;
+                };
+                take(values[i]);
+                for (std::size_t j = 0; j < ElementGraph::degree && graph[i][j] >= 0; ++j)
+                    take(values[static_cast<std::size_t>(graph[i][j])]);
+                next[i] = sum / __builtin_convertvector(terms, Floats);  // NaN where there are none
+            }
+        });
+        std::swap(values, next);
+    }
+    lane = 0;
+    for (std::vector<float>* field : fields) {
+        for (std::size_t i = 0; i < count; ++i) (*field)[i] = values[i][lane];
+        ++lane;
     }
 }
 

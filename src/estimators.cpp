@@ -28,8 +28,8 @@ const char* choice_name(std::uint8_t choice) {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> list(first_rung_choice + most_rungs * families);
         list[0] = "none", list[1] = "quadric 9", list[2] = "quartic 24", list[3] = "corrected";
-        constexpr const char* family_names[families] = {"quadric ", "half mean quadric ", "mean quadric ",
-                                                        "quartic free "};
+        constexpr const char* family_names[families] = {
+            "quadric ", "half mean quadric ", "mean quadric ", "half slope ", "slope ", "quartic free "};
         for (int rung = 0; rung < most_rungs; ++rung)
             for (int family = 0; family < families; ++family)
                 list[rung_choice(rung, static_cast<Family>(family))] =
@@ -45,10 +45,17 @@ void check_estimator(Estimator estimator, Input input, bool confidence) {
     const std::string shown = std::string("estimator = ") + estimator_name(estimator);
     if (estimator == Estimator::corrected && input == Input::cloud)
         throw std::invalid_argument(shown + " is for meshes; a cloud has no faces");
-    if ((estimator == Estimator::regression || estimator == Estimator::jet) && input == Input::mesh)
-        throw std::invalid_argument(shown + " is for clouds; take the vertices as one, or use dirichlet or corrected");
     const bool fits = estimator != Estimator::dirichlet && estimator != Estimator::corrected;
     if (confidence && !fits) throw std::invalid_argument(shown + " has no confidence: nothing is fitted");
+}
+
+void check_jet(int k, int degree) {
+    if (degree < 2)
+        throw std::invalid_argument("degree = " + std::to_string(degree) +
+                                    " has no curvature; estimator = jet takes 2 to 4");
+    if (k < 5)
+        throw std::invalid_argument("k = " + std::to_string(k) +
+                                    " is too small; estimator = jet takes at least 5 neighbours");
 }
 
 }  // namespace gaussmap

@@ -11,4 +11,8 @@ enum class Input { mesh, cloud };
 /// for.
 void check_estimator(Estimator estimator, Input input, bool confidence);
 
+/// Less than a quadric has no curvature.
+/// \throw std::invalid_argument on a degree below 2 or too few neighbours for a quadric.
+void check_jet(int k, int degree);
+
 }  // namespace gaussmap

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "frame.h"
 
@@ -16,13 +17,15 @@ constexpr double key_scale = 0x1p28;
 constexpr std::int32_t after_all = 0x7fffff00;
 constexpr std::size_t few = 64;
 
+/// Neighbours, nearest first, that nearly always have all corners among them.
+constexpr std::size_t nearest_few = 12;
+
 /// Four integers in a register.
 typedef std::int32_t Keys __attribute__((vector_size(16)));
 typedef std::int32_t KeysInMemory __attribute__((vector_size(16), aligned(4), may_alias));
 
 /// Project, invert, and find the polar angles, without a trigonometric function; the number of rays that count.
-std::size_t project(const Neighborhood& neighborhood, const Frame& frame, Fan& fan) {
-    const std::size_t slots = padded(neighborhood.count);
+std::size_t project(const Neighborhood& neighborhood, const Frame& frame, std::size_t slots, Fan& fan) {
     TwoMask counted = {};
     for (std::size_t j = 0; j < slots; j += 2) {
         const Two x = load_two(&neighborhood.x[j]), y = load_two(&neighborhood.y[j]), z = load_two(&neighborhood.z[j]);
@@ -125,14 +128,11 @@ std::size_t nearest(const Ray* rays, std::size_t count) {
     return best;
 }
 
-}  // namespace
-
-void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan) {
+/// The fan of the first `slots` neighbours.
+void build_among(const Neighborhood& neighborhood, const Frame& frame, std::size_t slots, Fan& fan) {
     fan.corners = 0;
     fan.closed = false;
-    if (!finite(normal)) return;
-    const std::size_t slots = padded(neighborhood.count);
-    std::size_t count = project(neighborhood, frame_about(normal), fan);
+    std::size_t count = project(neighborhood, frame, slots, fan);
     if (count < 2) return;
     if (slots <= few)
         sort_few(slots, fan);
@@ -167,6 +167,50 @@ void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan) {
     if (fan.closed) pass_by(rays[first]);
     for (std::size_t c = 0; c < size; ++c) chain[c] = rays[chain[c]].slot;
     fan.corners = size;
+}
+
+/// Least squared distance of the projected neighbours from slot `first` on; of those that count.
+double nearest_squared(const Neighborhood& neighborhood, const Frame& frame, std::size_t first) {
+    const Two far = Two{1, 1} * std::numeric_limits<double>::infinity();
+    Two least = far;
+    for (std::size_t j = first; j < padded(neighborhood.count); j += 2) {
+        const Two x = load_two(&neighborhood.x[j]), y = load_two(&neighborhood.y[j]), z = load_two(&neighborhood.z[j]);
+        const Two u = x * frame.u.x + y * frame.u.y + z * frame.u.z;
+        const Two v = x * frame.v.x + y * frame.v.y + z * frame.v.z;
+        const Two squared = u * u + v * v, counted = select(squared > tolerance * tolerance, squared, far);
+        least = select(counted < least, counted, least);
+    }
+    return std::min(least[0], least[1]);
+}
+
+/// Whether neighbours no nearer than that cannot be corners. An image b of theirs has |b| ≤ ρ = 1/√squared; next to the
+/// edge from a to c of the hull, the hull turns inwards at b where
+///   (b − a) × (c − b) = b × (c − a) − a × c ≤ ρ |c − a| − a × c
+/// is negative by more than the tolerance: where b is inside the hull, and b's neighbour outside all circles.
+bool out_of_reach(const Fan& fan, double squared) {
+    constexpr double margin = 1e-9;  // well above the tolerance
+    std::size_t before = fan.corners - 1;
+    for (std::size_t next = 0; next < fan.corners; before = next++) {
+        const Ray &a = fan.rays[static_cast<std::size_t>(fan.chain[before])],
+                  &c = fan.rays[static_cast<std::size_t>(fan.chain[next])];
+        const double cross = a.u * c.v - a.v * c.u - margin * a.size * c.size, u = c.u - a.u, v = c.v - a.v;
+        if (!(cross > 0 && cross * cross * squared > u * u + v * v)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan) {
+    fan.corners = 0;
+    fan.closed = false;
+    if (!finite(normal)) return;
+    const Frame frame = frame_about(normal);
+    if (neighborhood.count > nearest_few) {
+        build_among(neighborhood, frame, nearest_few, fan);
+        if (fan.closed && out_of_reach(fan, nearest_squared(neighborhood, frame, nearest_few))) return;
+    }
+    build_among(neighborhood, frame, padded(neighborhood.count), fan);
 }
 
 }  // namespace gaussmap

@@ -41,7 +41,8 @@ struct Fan {
 /// - neighbours that project onto the centre (to 1e-12 of the neighbourhood's size) are passed over;
 /// - neighbours all on one line through the centre make no fan; a gap of half a turn or more opens it.
 /// \param normal  unit, or NaN for no fan.
-/// Nothing is allocated. Time O(k²) for up to 64 neighbours, in vectors; O(k log k) beyond.
+/// Nothing is allocated. Where the twelve first neighbours make a closed fan that no other can reach into, it is all
+/// there is to it; else time O(k²) for up to 64 neighbours, in vectors, and O(k log k) beyond.
 void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan);
 
 }  // namespace gaussmap

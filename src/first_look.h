@@ -1,10 +1,12 @@
-// The first look at an element: interpolating quartics over its nearest neighbours, and what the residuals tell.
+// The first look at elements, four at a time: interpolating quartics over their nearest neighbours, and what the
+// residuals tell.
 #pragma once
 
 #include <algorithm>
 #include <limits>
-#include <vector>
 
+#include "lane_fits.h"
+#include "principal_normal.h"
 #include "shape_tensor.h"
 #include "vec.h"
 
@@ -12,6 +14,7 @@ namespace gaussmap {
 
 constexpr int look_neighbors = 24;  ///< that quartics are fitted to
 constexpr int wide_neighbors = 36;  ///< that the noise is told apart with
+static_assert(wide_neighbors <= most_fitted);
 
 /// In units of the elements' lengths. NaN where it is not determined.
 struct FirstLook {
@@ -42,10 +45,10 @@ inline double noise_variance(double residual, double wider) {
     return std::max(0.0, (growth * residual - wider) / (growth - 1));
 }
 
-/// Smallest principal direction of the element and its neighbours; NaN where they lie on a line.
-Vec3 principal_normal(const std::vector<Vec3>& neighbors, int count);
-
-/// \param neighbors  differences from the element, nearest first.
-FirstLook first_look(const std::vector<Vec3>& neighbors, int count);
+/// Look at the elements of four lanes.
+/// \param patches  differences of the neighbours, nearest first, finite everywhere.
+/// \param counts   neighbours that there are, up to `wide_neighbors`; 0 in lanes without an element.
+void first_look(LanePatches& patches, const int (&counts)[fit_lanes], FirstLook (&looks)[fit_lanes],
+                const LaneFitKernel& kernel = best_lane_fit());
 
 }  // namespace gaussmap

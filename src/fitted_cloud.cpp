@@ -70,10 +70,10 @@ ElementNormals given_normals(const OrderedCloud& cloud, Points normals) {
     return given;
 }
 
-FittedCurvature fit(const OrderedCloud& cloud, double size, Points normals, const CloudCurvatureOptions& options,
+/// By any estimator but the automatic one.
+FittedCurvature fit(const OrderedCloud& cloud, Points normals, const CloudCurvatureOptions& options,
                     const Execution& run, CloudCurvature& result) {
     const Elements elements = elements_of(cloud);
-    if (options.estimator == Estimator::automatic) return automatic_curvature(elements, size, run);
     if (options.estimator == Estimator::jet)
         return jet_curvature(elements, options.k, options.degree, options.confidence, run);
     Lap lap;
@@ -103,10 +103,17 @@ CloudCurvature fitted_cloud(Points points, Points normals, const CloudCurvatureO
     if (options.confidence) result.error.assign(points.count, nan);
     if (options.tensor) result.tensor = undefined_tensor(points.count);
     if (const double size = diagonal(cloud); std::isfinite(size) && size > 0) {
-        const FittedCurvature found = fit(cloud, size, normals, options, part_of(options.run, 0.05, 1), result);
-        result.lowered = found.lowered;
-        for (std::size_t i = 0; i < cloud.count(); ++i)
-            place(found, i, normals, static_cast<std::size_t>(cloud.source[i]), options, result);
+        const Execution run = part_of(options.run, 0.05, 1);
+        const auto take = [&](const FittedCurvature& found, std::size_t i, std::size_t element) {
+            place(found, i, normals, static_cast<std::size_t>(cloud.source[element]), options, result);
+        };
+        if (options.estimator == Estimator::automatic) {
+            result.lowered = automatic_curvature(elements_of(cloud), size, take, run);
+        } else {
+            const FittedCurvature found = fit(cloud, normals, options, run, result);
+            for (std::size_t i = 0; i < cloud.count(); ++i) take(found, i, i);
+            result.lowered = found.lowered;
+        }
     }
     for (const auto& [index, first] : cloud.copies) {
         const auto to = static_cast<std::size_t>(index), from = static_cast<std::size_t>(first);

@@ -22,6 +22,8 @@ struct Elements {
     /// several threads at once, with blocks that begin at multiples of `block`.
     std::function<void(std::size_t first, std::size_t last, int k, std::int32_t* rows)> neighbors;
     static constexpr std::size_t block = 256;
+    /// Neighbours are told by faces, which see through to no other sheet; else by distances in space.
+    bool connected = false;
 
     Vec3 operator[](std::size_t i) const { return position(i); }
 };

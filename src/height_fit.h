@@ -73,6 +73,8 @@ class Moments {
     }
 
     int count() const { return count_; }
+    /// Sum of the weights, after a solve.
+    double weight() const { return sum_[0][0]; }
 
     /// The height field of a degree ≤ Degree; with `constant` false it passes through the origin.
     /// False where the data do not determine it.

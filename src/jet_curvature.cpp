@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "normal_fit.h"
 #include "patch.h"
+#include "principal_normal.h"
 #include "shape_tensor.h"
 
 namespace gaussmap {

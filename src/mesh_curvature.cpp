@@ -1,12 +1,15 @@
 // Total curvature of a mesh: normals where none are given, the fused pass, and what happened.
 #include <cmath>
 #include <memory>
+#include <stdexcept>
+#include <string>
 
-#include "automatic_mesh.h"
 #include "check.h"
+#include "check_cloud.h"
 #include "clock.h"
 #include "corrected_curvature.h"
 #include "estimators.h"
+#include "fitted_mesh.h"
 #include "gaussmap/curvature.h"
 #include "normalize.h"
 #include "parallel.h"
@@ -32,12 +35,21 @@ void count_faces(MeshCurvature& result) {
     result.degenerate_faces = without_density - undefined;
 }
 
+void check(const MeshCurvatureOptions& options) {
+    check_estimator(options.estimator, Input::mesh, options.confidence);
+    if (options.estimator == Estimator::jet) check_jet(options.k, options.degree);
+    if (options.estimator == Estimator::regression && options.k < 3)
+        throw std::invalid_argument("k = " + std::to_string(options.k) +
+                                    " is too small; estimator = regression takes at least 3 neighbours");
+    if (options.estimator == Estimator::jet || options.estimator == Estimator::regression) check_degree(options.degree);
+}
+
 }  // namespace
 
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, const MeshCurvatureOptions& options) {
-    check_estimator(options.estimator, Input::mesh, options.confidence);
+    check(options);
     if (!normals.empty()) check_count("normals", normals.count, vertices.count, "vertices");
-    const bool fits = options.estimator == Estimator::automatic;
+    const bool fits = options.estimator != Estimator::dirichlet && options.estimator != Estimator::corrected;
     MeshCurvature result;
     auto start = Clock::now();
     if (normals.empty()) {
@@ -52,7 +64,7 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     if (fits) {
         MeshCurvatureOptions fitting = options;
         fitting.run = part_of(options.run, 0.05, 0.5);
-        automatic_mesh(vertices, faces, fitting, result);
+        fitted_mesh(vertices, faces, !normals.empty(), fitting, result);
     }
     const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);

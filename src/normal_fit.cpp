@@ -1,91 +1,19 @@
-// Normals of cloud points: the smallest principal direction of the neighbours (Hoppe et al. 1992), and above it the
+// Normals of cloud points: the smallest principal direction of the neighbours (principal_normal.h), and above it the
 // normal of a polynomial height field fitted to them (Cazals and Pouget 2005).
 #include "normal_fit.h"
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
-#include "eigen3.h"
+#include "principal_normal.h"
 
 namespace gaussmap {
 namespace {
 
-/// Neighbours closer to a line than the root of this, relative to their spread, span no plane.
-constexpr double line_tolerance = 1e-13;
 /// A monomial that the others match this closely on the neighbours is not determined by them.
 constexpr double rank_tolerance = 1e-4;
 /// Above this the normal equations, whose condition is that of the fit squared, are as good as reflections.
 constexpr double normal_equations_tolerance = 1e-2;
-
-const Vec3 undefined = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
-                        std::numeric_limits<double>::quiet_NaN()};
-
-constexpr Two one = {1, 1};
-
-/// The weights of the neighbours; the point itself weighs 1.
-struct Even {
-    GAUSSMAP_LANES Four operator()(Four /*squared*/) const { return {one, one}; }
-};
-struct Smooth {
-    double over_h_squared;
-    GAUSSMAP_LANES Four operator()(Four squared) const {
-        const Four rest = Four{one, one} - squared * over_h_squared;
-        return rest * rest;
-    }
-};
-
-/// Second moments of the point and its neighbours about their mean.
-template <class Weight>
-Symmetric3 moments(const Neighborhood& neighborhood, const Weight& weight) {
-    Four w, x, y, z, xx, xy, xz, yy, yz, zz;
-    for (std::size_t j = 0; j < neighborhood.count; j += lanes) {
-        const Four dx = load_four(&neighborhood.x[j]), dy = load_four(&neighborhood.y[j]);
-        const Four dz = load_four(&neighborhood.z[j]), s = weight(dx * dx + dy * dy + dz * dz);
-        const Four wx = s * dx, wy = s * dy, wz = s * dz;
-        w += s, x += wx, y += wy, z += wz;
-        xx += wx * dx, xy += wx * dy, xz += wx * dz;
-        yy += wy * dy, yz += wy * dz, zz += wz * dz;
-    }
-    // What fills the arrays up weighs 1 at the centre, and so does the centre.
-    const double filled = static_cast<double>(padded(neighborhood.count) - neighborhood.count);
-    const double all = total(w) - filled + 1;
-    const Vec3 sum = {total(x), total(y), total(z)}, mean = (1 / all) * sum;
-    return {total(xx) - sum.x * mean.x, total(xy) - sum.x * mean.y, total(xz) - sum.x * mean.z,
-            total(yy) - sum.y * mean.y, total(yz) - sum.y * mean.z, total(zz) - sum.z * mean.z};
-}
-
-/// The same from differences to the mean, which cancel nothing, one after the other.
-template <class Weight>
-Symmetric3 careful_moments(const Neighborhood& neighborhood, const Weight& weight) {
-    const auto weight_of = [&](Vec3 d) { return weight(Four{squared(d) * one, one}).low[0]; };
-    Vec3 mean;
-    double all = 1;
-    for (std::size_t j = 0; j < neighborhood.count; ++j) {
-        const Vec3 d = neighborhood.offset(j);
-        all += weight_of(d);
-        mean = mean + weight_of(d) * d;
-    }
-    mean = 1 / all * mean;
-    Symmetric3 m = {mean.x * mean.x, mean.x * mean.y, mean.x * mean.z,
-                    mean.y * mean.y, mean.y * mean.z, mean.z * mean.z};
-    for (std::size_t j = 0; j < neighborhood.count; ++j) {
-        const double w = weight_of(neighborhood.offset(j));
-        const Vec3 d = neighborhood.offset(j) - mean, wd = w * d;
-        m.xx += wd.x * d.x, m.xy += wd.x * d.y, m.xz += wd.x * d.z;
-        m.yy += wd.y * d.y, m.yz += wd.y * d.z, m.zz += wd.z * d.z;
-    }
-    return m;
-}
-
-template <class Weight>
-Vec3 principal_normal(const Neighborhood& neighborhood, const Weight& weight) {
-    Vec3 normal;
-    if (smallest_eigenvector(moments(neighborhood, weight), normal)) return upward(normal);
-    const Eigen3 principal = eigen(careful_moments(neighborhood, weight));
-    if (!(principal.values[1] > line_tolerance * principal.values[2])) return undefined;
-    return upward(principal.vectors[0]);
-}
 
 /// Powers i, j of the monomial uⁱ vʲ in column c of a jet: u v u² uv v² u³ …
 constexpr std::array<int, 2> powers(int c) {
@@ -113,14 +41,6 @@ struct Sums {
 };
 
 }  // namespace
-
-Vec3 principal_normal(const Neighborhood& neighborhood, bool weighted) {
-    if (!weighted) return principal_normal(neighborhood, Even());
-    double farthest = 0;
-    for (std::size_t j = 0; j < neighborhood.count; ++j) farthest = std::max(farthest, squared(neighborhood.offset(j)));
-    const auto k = static_cast<double>(neighborhood.count);
-    return principal_normal(neighborhood, Smooth{farthest > 0 ? k / (farthest * (k + 1)) : 0});
-}
 
 template <int Degree>
 void Jet<Degree>::fill(const Neighborhood& neighborhood, const Frame& frame) {
@@ -196,21 +116,62 @@ bool Jet<Degree>::fit(const Neighborhood& neighborhood, const Frame& frame, Vec3
     return finite(normal);
 }
 
-/// The highest degree up to the one asked for that the neighbours determine; 0 where none.
-int NormalFit::fit_jet(const Neighborhood& neighborhood, const Frame& frame, Vec3& normal) {
-    if (degree_ >= 4 && std::get<3>(jets_).fit(neighborhood, frame, normal)) return 4;
-    if (degree_ >= 3 && std::get<2>(jets_).fit(neighborhood, frame, normal)) return 3;
-    if (degree_ >= 2 && std::get<1>(jets_).fit(neighborhood, frame, normal)) return 2;
-    return std::get<0>(jets_).fit(neighborhood, frame, normal) ? 1 : 0;
+bool NormalFit::fit_alone(int degree, const Neighborhood& neighborhood, const Frame& frame, Vec3& normal) {
+    switch (degree) {
+        case 4:
+            return std::get<3>(jets_).fit(neighborhood, frame, normal);
+        case 3:
+            return std::get<2>(jets_).fit(neighborhood, frame, normal);
+        case 2:
+            return std::get<1>(jets_).fit(neighborhood, frame, normal);
+        default:
+            return std::get<0>(jets_).fit(neighborhood, frame, normal);
+    }
 }
 
-NormalFit::Result NormalFit::operator()(const Neighborhood& neighborhood) {
-    Result result = {principal_normal(neighborhood, method_ == CloudNormals::weighted_pca)};
-    if (method_ != CloudNormals::jet || !finite(result.normal)) return result;
-    const Frame frame = frame_about(result.normal);
-    result.lowered = fit_jet(neighborhood, frame, result.normal) < degree_;
-    result.normal = upward(result.normal);
-    return result;
+/// Fits over the frames of some lanes, where a kernel has the degree. The others may yet be determined: the condition
+/// of normal equations is that of the fit squared.
+void NormalFit::fit_in_lanes(int degree, std::span<const Neighborhood> around, const Group& group) {
+    std::fill_n(fields_.determined, fit_lanes, false);
+    if (degree != 2 && degree != 4) return;
+    const LaneFit& fit = degree == 2 ? best_lane_fit().quadric : best_lane_fit().quartic;
+    const auto unknowns = static_cast<std::size_t>(monomials(degree)) - 1;
+    LaneRange range = {{}, {}, Chart::monge, false};
+    for (std::size_t l = 0; l < around.size(); ++l) {
+        const Neighborhood& one = around[l];
+        if (!group.wanted[l] || one.count < unknowns || one.count > most_fitted) continue;
+        range.last[l] = static_cast<int>(one.count);
+        patches_.see(static_cast<int>(l), group.frame[l], 1);
+        for (std::size_t j = 0; j < one.count; ++j)
+            patches_.d[j][0][l] = one.x[j], patches_.d[j][1][l] = one.y[j], patches_.d[j][2][l] = one.z[j];
+    }
+    fit.collect(patches_, range, true, sums_);
+    fit.solve(sums_, false, false, fields_);
+}
+
+void NormalFit::operator()(std::span<const Neighborhood> around, std::span<Result> results) {
+    Group group = {};
+    std::size_t wanted = 0;
+    for (std::size_t l = 0; l < around.size(); ++l) {
+        results[l] = {principal_normal(around[l], method_ == CloudNormals::weighted_pca)};
+        if (method_ != CloudNormals::jet || !finite(results[l].normal)) continue;
+        group.frame[l] = frame_about(results[l].normal);
+        group.wanted[l] = results[l].lowered = true;
+        ++wanted;
+    }
+    // The highest degree up to the one asked for that the neighbours determine.
+    for (int degree = degree_; degree > 0 && wanted > 0; --degree) {
+        fit_in_lanes(degree, around, group);
+        for (std::size_t l = 0; l < around.size(); ++l) {
+            if (!group.wanted[l]) continue;
+            const Frame& frame = group.frame[l];
+            Vec3 normal = unit(frame.n - fields_.c[1][l] * frame.u - fields_.c[2][l] * frame.v);
+            if (!(fields_.determined[l] && finite(normal)) && !fit_alone(degree, around[l], frame, normal)) continue;
+            results[l] = {upward(normal), degree < degree_};
+            group.wanted[l] = false;
+            --wanted;
+        }
+    }
 }
 
 }  // namespace gaussmap

@@ -1,20 +1,17 @@
 // The normal of one point of a cloud, fitted to its neighbours.
 #pragma once
 
+#include <span>
 #include <tuple>
 #include <vector>
 
 #include "frame.h"
 #include "gaussmap/normals.h"
+#include "lane_fits.h"
 #include "least_squares.h"
 #include "neighborhood.h"
 
 namespace gaussmap {
-
-/// The smallest principal direction of the point and its neighbours, looking up; NaN where they span no plane.
-/// Every one weighs the same, or `weighted` (1 − (d/h)²)² by its distance d from the point: smooth, and 0 where the
-/// next neighbour of a surface would come, h² = d_k² (k + 1)/k.
-Vec3 principal_normal(const Neighborhood& neighborhood, bool weighted);
 
 /// The normal at the point of h(u, v) = Σ c_ij uⁱ vʲ, 1 ≤ i + j ≤ Degree, fitted to the neighbours over a frame
 /// (docs/method.md, eq. (8)). There is no constant term: the height field passes through the point.
@@ -48,14 +45,23 @@ class NormalFit {
         Vec3 normal;           ///< unit, looking up; NaN where undefined
         bool lowered = false;  ///< the jet took a lower degree than asked for
     };
-    Result operator()(const Neighborhood& neighborhood);
+    /// Of up to `fit_lanes` points, which takes as long as of one; the same bits for one as for more.
+    void operator()(std::span<const Neighborhood> around, std::span<Result> results);
 
   private:
-    int fit_jet(const Neighborhood& neighborhood, const Frame& frame, Vec3& normal);
+    struct Group {
+        Frame frame[fit_lanes];
+        bool wanted[fit_lanes];
+    };
+    void fit_in_lanes(int degree, std::span<const Neighborhood> around, const Group& group);
+    bool fit_alone(int degree, const Neighborhood& neighborhood, const Frame& frame, Vec3& normal);
 
     CloudNormals method_;
     int degree_;
     std::tuple<Jet<1>, Jet<2>, Jet<3>, Jet<4>> jets_;
+    LanePatches patches_;
+    LaneSums sums_;
+    LaneFields fields_ = {};
 };
 
 }  // namespace gaussmap

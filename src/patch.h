@@ -21,13 +21,10 @@ struct EqualWeights {
     double operator()(double) const { return 1; }
 };
 
-/// 1 / |d|¹⁰, the inverse of the squared remainder of a quartic (docs/method.md, eq. (17)). Nearer than a fifth of the
-/// size all weigh alike, so that a pair of almost equal points does not decide alone.
-struct RemainderWeights {
-    double operator()(double squared) const {
-        const double r = 1 / std::max(squared, 0.04), r2 = r * r;
-        return r2 * r2 * r;
-    }
+/// 1 − |d|², and a little more, so that the farthest neighbour counts too: the least error for noisy data (Fan, Gasser,
+/// Gijbels, Brockmann and Engel, 1997).
+struct SmoothingWeights {
+    double operator()(double squared) const { return 1 - std::min(squared, 1.0) / 1.1; }
 };
 
 /// Where neighbours are seen from.

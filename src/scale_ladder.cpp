@@ -1,19 +1,25 @@
-// Each rung fits half as many neighbours again as the one below. The error of a fit is its variance, known from the
-// noise, and its bias, told by what the next rung changes beyond the two fits' noise; both averaged over the surface
-// near the element, without which the choice would follow the noise. Comparable: Lepski's rule, 1990, and the
-// refined residual squares criterion of Fan and Gijbels, 1995, which choose a bandwidth from such changes.
+// Each rung fits half as many neighbours again as the one below, about the foot that the one below found, since a ball
+// about a noisy point holds more of its own side. Wide windows stand on the elements of a coarser level. The error of a
+// fit is its variance, known from the noise, and its bias, told by what the next rung changes beyond the two fits'
+// noise; both averaged over the surface near the element, without which the choice would follow the noise. Comparable:
+// Lepski's rule, 1990, and the refined residual squares criterion of Fan and Gijbels, 1995, which choose a bandwidth
+// from such changes.
 #include "scale_ladder.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
 #include "first_look.h"
+#include "gaussmap/neighbors.h"
 #include "parallel.h"
 #include "patch.h"
+#include "pyramid.h"
 #include "shape_tensor.h"
+#include "slope_fit.h"
 
 namespace gaussmap {
 namespace {
@@ -21,17 +27,33 @@ namespace {
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 constexpr float never = std::numeric_limits<float>::infinity();
 constexpr int most_samples = 96;  ///< of an average
-constexpr double growth = 1.5;    ///< of the neighbours from rung to rung
+constexpr std::size_t grain = 256;
 
-/// What is known of each family. The variances are those of the geometry alone: discs filled evenly, k neighbours
-/// averaged with the kernel 1 − (d/h)².
+constexpr int rungs_of_level = 3;  ///< the lowest level has as many more
+constexpr int level_of(int rung) {
+    return std::max(0, rung / rungs_of_level - 1);
+}
+
+/// What is known of each family, for discs filled evenly.
 struct Traits {
     double variance;  ///< relative to the fit's
     double change;    ///< variance of the change to the next rung, relative to the family's own
-    double bias;  ///< how much of the bias the next rung adds to it: growth of h² (quadrics) or h⁴ (quartics), less 1
+    /// How much of the bias the next rung adds to it: growth of h² less 1; of h⁴ were it for small windows, but
+    /// quartics of noisy data have windows as wide as the shape.
+    double bias;
 };
-constexpr std::array<Traits, families> traits = {
-    {{1, 0.70, growth - 1}, {0.215, 0.37, growth - 1}, {0.08, 0.40, growth - 1}, {1, 0.71, growth* growth - 1}}};
+constexpr double growth = 1.44;  ///< of the neighbours from rung to rung
+constexpr std::array<Traits, families> traits = {{{1, 0.42, growth - 1},
+                                                  {0.24, 0.31, growth - 1},
+                                                  {0.08, 0.35, growth - 1},
+                                                  {0.20, 0.30, growth - 1},
+                                                  {0.09, 0.28, growth - 1},
+                                                  {1, 0.50, 0.7}}};
+
+/// Weighted sums in place of counts: the sandwich covariance of a fit with `SmoothingWeights` relative to that of
+/// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
+/// falls little at borders).
+constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.467};
 
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
@@ -40,130 +62,180 @@ constexpr bool of_quartic(int family) {
 using Field = std::vector<float>;
 
 /// What a rung found, an element each; NaN where it was not on the rung. Two of a kind: of the quadric and of the
-/// quartic.
+/// quartic. Variances are for heights of unit variance on the lowest level.
 struct Rung {
     Field size, half_size;                 ///< distances of the last neighbour and of the one half way
-    std::array<Field, 2> variance, trace;  ///< of the density and of the shape operator, for heights of unit variance
-    std::array<Field, 2> residual;         ///< variance of the heights about the fit
+    std::array<Field, 2> variance, trace;  ///< of the density and of the shape operator
+    std::array<Field, 2> residual;         ///< variance of the heights about the fit, on the lowest level
     std::array<Field, families> density;   ///< |S|², its bias by noise included
+    std::array<Field, 2> spread;           ///< variance of the slopes, half and whole, relative to that of an even disc
     std::array<std::vector<Symmetric3>, families> tensor;
+    std::vector<Vec3> normal;
 
-    explicit Rung(std::size_t count) : size(count, nan), half_size(size) {
-        for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = size;
+    explicit Rung(std::size_t count = 0) : size(count, nan), half_size(size), normal(count, Vec3{nan, nan, nan}) {
+        for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = spread[q] = size;
         for (int f = 0; f < families; ++f) density[f] = size, tensor[f].resize(count);
     }
 };
 
-class Ladder {
-  public:
-    Ladder(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
-           AutomaticCurvature& result, const Execution& run)
-        : elements_(elements),
-          scale_(scale),
-          graph_(graph),
-          run_{run.threads, {}},
-          active_(std::move(active)),
-          result_(result),
-          view_(elements.count),
-          samples_(elements.count * most_samples),
-          noise_(elements.count, nan),
-          settled_(elements.count, 0),
-          best_(elements.count),
-          lower_(elements.count),
-          upper_(elements.count) {
-        for (std::size_t i = 0; i < elements.count; ++i) {
-            const double error = result.error[i];
-            best_[i] = std::isfinite(error) ? static_cast<float>(error * error) : never;
-        }
-        for (int f = 0; f < families; ++f)
-            dead_[f].assign(elements.count, 0), least_[f].assign(elements.count, never),
-                bias_[f].assign(elements.count, 0);
+template <class T>
+std::vector<T> at(const std::vector<T>& field, const std::vector<std::int32_t>& index) {
+    std::vector<T> picked(index.size());
+    for (std::size_t i = 0; i < index.size(); ++i) picked[i] = field[static_cast<std::size_t>(index[i])];
+    return picked;
+}
+
+/// A rung's finds at the elements that represent those of the next level.
+Rung at(const Rung& rung, const std::vector<std::int32_t>& index) {
+    Rung picked;
+    picked.size = at(rung.size, index), picked.half_size = at(rung.half_size, index);
+    picked.normal = at(rung.normal, index);
+    for (int q = 0; q < 2; ++q) {
+        picked.variance[q] = at(rung.variance[q], index), picked.trace[q] = at(rung.trace[q], index);
+        picked.residual[q] = at(rung.residual[q], index), picked.spread[q] = at(rung.spread[q], index);
     }
+    for (int f = 0; f < families; ++f)
+        picked.density[f] = at(rung.density[f], index), picked.tensor[f] = at(rung.tensor[f], index);
+    return picked;
+}
 
-    void climb(const Execution& run) {
-        for (int rung = 0; rung < most_rungs && rung_neighbors(rung) < static_cast<int>(elements_.count); ++rung) {
-            if (std::find(active_.begin(), active_.end(), 1) == active_.end()) break;
-            fit(rung);
-            average();
-            if (rung > 0) {
-                weigh(rung - 1);
-                let_go();
-            }
-            std::swap(lower_, upper_);
-            if (run.progress && !run.progress((rung + 1.0) / most_rungs)) throw Cancelled();
-        }
+/// What the ladder knows of the elements of a level.
+struct Standing {
+    std::vector<std::uint8_t> active, settled;
+    Field noise;  ///< variance of the heights on the lowest level
+    std::array<std::vector<std::uint8_t>, families> dead;
+    std::array<Field, families> least;  ///< squared error of each family's best
+    std::array<Field, families> bias;   ///< squared, as far as it is sure on the rungs below
+
+    explicit Standing(std::vector<std::uint8_t> begin)
+        : active(std::move(begin)), settled(active.size(), 0), noise(active.size(), nan) {
+        dead.fill(settled), least.fill(Field(active.size(), never)), bias.fill(Field(active.size(), 0));
     }
-
-  private:
-    void fit(int rung);
-    void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
-                     Moments<4>& quartic);
-    void sample(std::size_t i, const std::int32_t* row, int k);
-    void average();
-    void weigh(int rung);
-    void estimate_noise(int rung, const Field& residual, const Field& wider);
-    void weigh_family(int rung, int family, const Field& residual);
-    void let_go();
-
-    Vec3 difference(std::size_t from, std::size_t to) const {
-        return scale_ * (elements_.position(to) - elements_.position(from));
-    }
-
-    const Elements& elements_;
-    double scale_;
-    const ElementGraph& graph_;
-    Execution run_;
-    std::vector<std::uint8_t> active_;
-    AutomaticCurvature& result_;
-    std::vector<View> view_;
-    std::vector<std::int32_t> samples_;  ///< `most_samples` of the neighbours of each element, nearest first, −1 beyond
-    Field noise_;                        ///< variance of the heights
-    std::vector<std::uint8_t> settled_, dead_[families];
-    Field best_, least_[families];  ///< squared errors: of what `result` holds, and of each family's best
-    Field bias_[families];          ///< squared, as far as it is sure on the rungs below
-    Rung lower_, upper_;
 };
 
-void Ladder::fit(int rung) {
-    upper_ = Rung(elements_.count);
-    const int k = rung_neighbors(rung);
-    for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t first, std::size_t last) {
-        const auto begin = active_.begin() + static_cast<std::ptrdiff_t>(first),
-                   end = active_.begin() + static_cast<std::ptrdiff_t>(last);
-        if (std::find(begin, end, 1) == end) return;
-        std::vector<std::int32_t> rows((last - first) * static_cast<std::size_t>(k));
-        elements_.neighbors(first, last, k, rows.data());
-        std::vector<Vec3> neighbors(static_cast<std::size_t>(k));
+Standing coarsened(const Standing& below, const Level& level, const Level& above) {
+    Standing standing(at(below.active, above.representative));
+    standing.settled = at(below.settled, above.representative);
+    standing.noise = at(below.noise, above.representative);
+    for (int f = 0; f < families; ++f) {
+        standing.dead[f] = at(below.dead[f], above.representative);
+        standing.least[f] = at(below.least[f], above.representative);
+        standing.bias[f] = at(below.bias[f], above.representative);
+    }
+    for (std::size_t i = 0; i < level.count(); ++i) {
+        if (!below.active[i]) continue;
+        const auto parent = static_cast<std::size_t>(level.parent[i]);
+        standing.active[parent] = 1;
+        for (int f = 0; f < families; ++f) standing.dead[f][parent] &= below.dead[f][i];
+    }
+    return standing;
+}
+
+Measured nothing_measured(std::size_t count) {
+    Measured measured;
+    measured.density.assign(count, nan);
+    measured.risk.assign(count, never);
+    measured.normal.assign(count, Vec3{nan, nan, nan});
+    measured.tensor.resize(count);
+    measured.choice.assign(count, 0);
+    return measured;
+}
+
+/// One level's part of the climb.
+class Ladder {
+  public:
+    Ladder(const Elements& elements, Level& level, Standing& standing, Measured& measured, const Execution& run)
+        : elements_(elements),
+          level_(level),
+          standing_(standing),
+          measured_(measured),
+          run_{run.threads, {}},
+          index_(Points(level.position), run_),
+          samples_(level.count() * most_samples, -1) {}
+
+    /// The finds of a rung, fitted and averaged.
+    Rung step(int rung);
+    /// Weigh the finds of a rung by what the next one changes.
+    void weigh(int rung, const Rung& lower, const Rung& upper);
+    void let_go();
+
+  private:
+    void fit(int rung, std::size_t first, std::size_t last, Rung& found);
+    void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, Moments<2>& quadric,
+                     Moments<4>& quartic, Rung& found);
+    void average(Rung& found);
+    void average_element(std::size_t i, Rung& found);
+    void estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider);
+    void weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Field& residual);
+
+    const Elements& elements_;
+    Level& level_;
+    Standing& standing_;
+    Measured& measured_;
+    Execution run_;
+    NeighborIndex index_;
+    std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 beyond
+};
+
+Rung Ladder::step(int rung) {
+    Rung found(level_.count());
+    constexpr std::size_t part = 64 * grain;  // whose rows are held at once
+    for (std::size_t first = 0; first < level_.count(); first += part)
+        fit(rung, first, std::min(level_.count(), first + part), found);
+    average(found);
+    return found;
+}
+
+void Ladder::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
+    std::vector<std::size_t> who;
+    std::vector<double> feet;
+    for (std::size_t i = first; i < last; ++i) {
+        if (!standing_.active[i]) continue;
+        who.push_back(i);
+        feet.insert(feet.end(), {level_.foot[3 * i], level_.foot[3 * i + 1], level_.foot[3 * i + 2]});
+    }
+    if (who.empty()) return;
+    const auto k = static_cast<std::size_t>(rung_neighbors(rung) / static_cast<int>(level_.members));
+    const bool by_faces = elements_.connected && level_.members == 1;
+    std::vector<std::int32_t> rows;
+    if (by_faces) {
+        rows.assign((last - first) * k, -1);
+        for_blocks(last - first, Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
+            elements_.neighbors(first + a, first + b, static_cast<int>(k), rows.data() + a * k);
+        });
+    } else {
+        rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
+    }
+    for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
+        std::vector<Vec3> neighbors;
         Moments<2> quadric;
         Moments<4> quartic;
-        for (std::size_t i = first; i < last; ++i) {
-            if (!active_[i]) continue;
-            const std::int32_t* row = rows.data() + (i - first) * static_cast<std::size_t>(k);
-            int count = 0;
-            for (; count < k && row[count] >= 0; ++count)
-                neighbors[static_cast<std::size_t>(count)] = difference(i, static_cast<std::size_t>(row[count]));
-            if (count < k) continue;
-            fit_element(i, rung, neighbors, count, quadric, quartic);
-            upper_.half_size[i] = static_cast<float>(length(neighbors[static_cast<std::size_t>(k / 2 - 1)]));
-            sample(i, row, k);
+        for (; a < b; ++a) {
+            const std::size_t i = who[a];
+            const std::int32_t* row = rows.data() + (by_faces ? i - first : a) * k;
+            const Vec3 foot = level_.foot_of(i);
+            neighbors.clear();
+            if (by_faces) neighbors.push_back(level_.at(i) - foot);
+            for (std::size_t j = 0; j < k && row[j] >= 0; ++j)
+                neighbors.push_back(level_.at(static_cast<std::size_t>(row[j])) - foot);
+            if (neighbors.size() < k) continue;
+            found.half_size[i] = static_cast<float>(length(neighbors[k / 2 - 1]));
+            fit_element(i, rung, neighbors, quadric, quartic, found);
+            const std::size_t stride = (k + most_samples - 1) / most_samples;
+            std::int32_t* to = samples_.data() + i * most_samples;
+            for (std::size_t s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
         }
     });
 }
 
-/// Evenly along the row.
-void Ladder::sample(std::size_t i, const std::int32_t* row, int k) {
-    const int stride = (k + most_samples - 1) / most_samples;
-    std::int32_t* to = samples_.data() + i * most_samples;
-    for (int s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
-}
-
 /// Settle the view on a quadric, which noise sways least; what it left before the last turn, infinite where nothing is
 /// determined.
-double settle_on_quadric(Moments<2>& moments, const std::vector<Vec3>& neighbors, int count, int turns, View& view) {
+double settle_on_quadric(Moments<2>& moments, const std::vector<Vec3>& neighbors, int turns, View& view) {
     double residual = std::numeric_limits<double>::infinity();
     for (; turns > 0 && finite(view.normal); --turns) {
         HeightField<2> field;
-        const Frame frame = collect(moments, neighbors.data(), count, true, view, Chart::chord);
+        const Frame frame = collect(moments, neighbors.data(), static_cast<int>(neighbors.size()), false, view,
+                                    Chart::chord, SmoothingWeights());
         if (!moments.solve(true, field)) break;
         residual = field.residual;
         settle(view, frame, field.c);
@@ -173,172 +245,307 @@ double settle_on_quadric(Moments<2>& moments, const std::vector<Vec3>& neighbors
 
 /// The view from the rung below, or while windows are small a fresh one, whichever leaves less: at corners of a noisy
 /// border a first view may be tilted beyond recovery.
-void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, int count, Moments<2>& quadric,
-                         Moments<4>& quartic) {
+void Ladder::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, Moments<2>& quadric,
+                         Moments<4>& quartic, Rung& found) {
     constexpr int rungs_of_fresh_views = 6;
-    View& view = view_[i];
-    view.size = length(neighbors[static_cast<std::size_t>(count) - 1]);
+    const int count = static_cast<int>(neighbors.size());
+    View view = {level_.normal[i], {}, length(neighbors.back())};
     if (!(view.size > 0)) return;
     double residual = std::numeric_limits<double>::infinity();
-    if (rung > 0) residual = settle_on_quadric(quadric, neighbors, count, 1, view);
+    if (rung > 0) residual = settle_on_quadric(quadric, neighbors, 1, view);
     if (rung < rungs_of_fresh_views) {
         View fresh = {principal_normal(neighbors, count), {}, view.size};
-        const double left = settle_on_quadric(quadric, neighbors, count, 2, fresh);
+        const double left = settle_on_quadric(quadric, neighbors, 2, fresh);
         if (left < residual) view = fresh, residual = left;
     }
     if (!std::isfinite(residual)) return;
     HeightField<2> curved;
-    const Frame frame = collect(quartic, neighbors.data(), count, true, view, Chart::chord);
+    const Frame frame = collect(quartic, neighbors.data(), count, false, view, Chart::chord, SmoothingWeights());
     HeightField<4> full;
     if (!quartic.solve(true, curved, true)) return;
-    upper_.size[i] = static_cast<float>(view.size);
+    found.size[i] = static_cast<float>(view.size);
     const double size4 = std::pow(view.size, 4), size6 = std::pow(view.size, 6);
     const auto keep = [&](int q, Family family, const auto& field) {
         const SurfaceJet jet = surface_jet(field.c, frame, view.size);
         const auto f = static_cast<int>(family);
-        upper_.tensor[f][i] = jet.tensor;
-        upper_.density[f][i] = static_cast<float>(squared_norm(jet.tensor));
-        upper_.variance[q][i] = static_cast<float>(density_variance(field) / size6);
-        upper_.trace[q][i] = static_cast<float>(shape_variance(field) / size4);
-        upper_.residual[q][i] = static_cast<float>(field.residual / std::max(1, field.free) * view.size * view.size);
+        const double each = sandwich[q] / level_.members;
+        const double free = quartic.weight() - weight_of_unknown[q] * (count - field.free);
+        found.tensor[f][i] = jet.tensor;
+        found.density[f][i] = static_cast<float>(squared_norm(jet.tensor));
+        found.variance[q][i] = static_cast<float>(each * density_variance(field) / size6);
+        found.trace[q][i] = static_cast<float>(each * shape_variance(field) / size4);
+        found.residual[q][i] = static_cast<float>(level_.members * field.residual /
+                                                  std::max(free, 0.1 * quartic.weight()) * view.size * view.size);
+        return jet;
     };
-    keep(0, Family::quadric, curved);
+    const SurfaceJet jet = keep(0, Family::quadric, curved);
+    found.normal[i] = jet.normal;
+    // A foot that runs away is no foot.
+    const Vec3 step = view.foot + view.size * curved.c[0] * frame.n;
+    if (squared(step) < 0.25 * view.size * view.size && finite(jet.normal)) {
+        store(level_.foot.data() + 3 * i, level_.foot_of(i) + step);
+        level_.normal[i] = jet.normal;
+    }
     if (quartic.solve(true, full, true)) keep(1, Family::quartic, full);
 }
 
-/// Shape operators of the quadrics, averaged over the samples within half the neighbours' reach and within all of it,
-/// with the weights 1 − (d/h)².
-void Ladder::average() {
-    const auto quadric = static_cast<int>(Family::quadric);
-    for_blocks(elements_.count, Elements::block, run_, [&](std::size_t, std::size_t i, std::size_t last) {
-        for (; i < last; ++i) {
-            if (!active_[i] || !std::isfinite(upper_.density[quadric][i])) continue;
-            const double reach[2] = {double(upper_.half_size[i]) * upper_.half_size[i],
-                                     double(upper_.size[i]) * upper_.size[i]};
-            const Vec3 normal = view_[i].normal;
-            Symmetric3 sum[2] = {upper_.tensor[quadric][i], upper_.tensor[quadric][i]};
-            double weights[2] = {1, 1};
-            const std::int32_t* row = samples_.data() + i * most_samples;
-            for (int s = 0; s < most_samples && row[s] >= 0; ++s) {
-                const auto other = static_cast<std::size_t>(row[s]);
-                const double along = dot(view_[other].normal, normal), away = squared(difference(i, other));
-                // Other sheets and far sides look elsewhere.
-                if (!std::isfinite(upper_.density[quadric][other]) || std::abs(along) < 0.3) continue;
-                const double sign = along < 0 ? -1 : 1;
-                const Symmetric3 there = carried(upper_.tensor[quadric][other], sign * view_[other].normal, normal);
-                for (int m = 0; m < 2; ++m) {
-                    const double weight = 1 - away / reach[m];
-                    if (weight > 0) add(sum[m], sign * weight, there), weights[m] += weight;
-                }
-            }
-            for (int m = 0; m < 2; ++m) {
-                const auto family = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
-                Symmetric3 mean;
-                add(mean, 1 / weights[m], sum[m]);
-                upper_.tensor[family][i] = mean;
-                upper_.density[family][i] = static_cast<float>(squared_norm(mean));
-            }
-        }
+void Ladder::average(Rung& found) {
+    for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
+        for (; i < last; ++i)
+            if (standing_.active[i] && std::isfinite(found.density[static_cast<int>(Family::quadric)][i]))
+                average_element(i, found);
     });
 }
 
-constexpr int reach_of_errors = 30, reach_of_variances = 15;  ///< steps of diffusion
-
-/// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
-/// borders, where windows are half discs, not on the first rungs.
-void Ladder::estimate_noise(int rung, const Field& residual, const Field& wider) {
-    constexpr int first_to_tell = 3;
-    for (std::size_t i = 0; i < elements_.count; ++i) {
-        if (settled_[i] || !std::isfinite(residual[i]) || !std::isfinite(wider[i])) continue;
-        noise_[i] = static_cast<float>(noise_variance(residual[i], wider[i]));
-        settled_[i] = rung >= first_to_tell && lower_.size[i] * lower_.size[i] > 42 * residual[i];
+/// Over the samples within half the neighbours' reach and within all of it, with the weights 1 − (d/h)²: the mean of
+/// the quadrics' shape operators, and the slopes of their normals over their feet.
+void Ladder::average_element(std::size_t i, Rung& found) {
+    const auto& quadric = found.tensor[static_cast<int>(Family::quadric)];
+    const Vec3 normal = found.normal[i], foot = level_.foot_of(i);
+    const Frame frame = frame_about(normal);
+    const double unit = 1 / double(found.size[i]);
+    const double reach[2] = {double(found.half_size[i]) * found.half_size[i], double(found.size[i]) * found.size[i]};
+    Symmetric3 sum[2] = {quadric[i], quadric[i]};
+    double weights[2] = {1, 1};
+    SlopeFit slopes[2];
+    const std::int32_t* row = samples_.data() + i * most_samples;
+    for (int s = 0; s < most_samples && row[s] >= 0; ++s) {
+        const auto other = static_cast<std::size_t>(row[s]);
+        if (other == i || !std::isfinite(found.size[other])) continue;
+        const double along = dot(found.normal[other], normal);
+        // Other sheets and far sides look elsewhere.
+        if (!(std::abs(along) >= 0.3)) continue;
+        const double sign = along < 0 ? -1 : 1;
+        const Vec3 there = sign * found.normal[other], d = level_.foot_of(other) - foot;
+        const double away = squared(d);
+        if (away >= reach[1]) continue;
+        const Symmetric3 tensor = carried(quadric[other], there, normal);
+        for (int m = 0; m < 2; ++m) {
+            const double weight = 1 - away / reach[m];
+            if (!(weight > 0)) continue;
+            add(sum[m], sign * weight, tensor), weights[m] += weight;
+            slopes[m].add(unit * dot(d, frame.u), unit * dot(d, frame.v), dot(there, frame.u), dot(there, frame.v),
+                          weight);
+        }
+    }
+    for (int m = 0; m < 2; ++m) {
+        const auto mean = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
+        Symmetric3 tensor;
+        add(tensor, 1 / weights[m], sum[m]);
+        found.tensor[mean][i] = tensor;
+        found.density[mean][i] = static_cast<float>(squared_norm(tensor));
+        Slopes fit;
+        if (slopes[m].count() < 10 || !slopes[m].solve<5>(fit)) continue;
+        const auto slope = static_cast<int>(m == 0 ? Family::half_slope : Family::slope);
+        Symmetric3& shape = found.tensor[slope][i];
+        add_product(shape, unit * fit.s[0][0], frame.u, frame.u);
+        add_product(shape, unit * (fit.s[0][1] + fit.s[1][0]), frame.u, frame.v);
+        add_product(shape, unit * fit.s[1][1], frame.v, frame.v);
+        found.density[slope][i] = static_cast<float>(squared_norm(shape));
+        // Over a disc filled evenly Σ w u² = n h² / 12.
+        const double even = 24 / (slopes[m].count() * reach[m] * unit * unit);
+        found.spread[m][i] = static_cast<float>(std::max(1.0, (fit.covariance[0][0] + fit.covariance[1][1]) / even));
     }
 }
 
-/// A change is more than noise where it is this many times what noise is expected to do.
-constexpr double sure = 2.5;
+constexpr int reach_of_errors = 60, near_reach = 12, reach_of_variances = 15;  ///< steps of diffusion
+
+/// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
+/// borders, where windows are half discs, not on the first rungs. Until then it may grow from rung to rung by as much
+/// as less is cut off, and not by what a shape flattened under a wide window leaves.
+void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider) {
+    constexpr int first_to_tell = 3;
+    constexpr float less_cut_off = 1.15F;
+    for (std::size_t i = 0; i < level_.count(); ++i) {
+        if (standing_.settled[i] || !std::isfinite(residual[i]) || !std::isfinite(wider[i])) continue;
+        const auto told = static_cast<float>(noise_variance(residual[i], wider[i]));
+        const bool known = rung > first_to_tell && std::isfinite(standing_.noise[i]);
+        standing_.noise[i] = known ? std::min(told, less_cut_off * standing_.noise[i]) : told;
+        standing_.settled[i] = rung >= first_to_tell && lower.size[i] * lower.size[i] > 42 * residual[i];
+    }
+}
+
+/// Squared changes relative to those expected of noise: what is usual over a wide region and near by, what is surely
+/// more than noise, and the most that counts, as the tails of noise are heavy.
+constexpr double usual = 1.3, usual_near = 2.2, sure = 2.5, most_surprising = 50;
+/// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
+constexpr double outlying = 9;
 
 /// Take a family's value where it promises a smaller error than what there is.
-void Ladder::weigh_family(int rung, int family, const Field& residual) {
+void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Field& residual) {
     const Traits& known = traits[static_cast<std::size_t>(family)];
     const int q = of_quartic(family) ? 1 : 0;
-    const std::size_t count = elements_.count;
-    const auto unbiased = [&](const Rung& on, std::size_t i) {
-        return on.density[family][i] - noise_[i] * known.variance * on.trace[q][i];
+    const std::size_t count = level_.count();
+    const Field& noise = standing_.noise;
+    const int half = static_cast<int>(Family::half_slope), whole = static_cast<int>(Family::slope);
+    const auto relative = [&](const Rung& on, std::size_t i) -> double {
+        return family == half    ? known.variance * on.spread[0][i]
+               : family == whole ? known.variance * on.spread[1][i]
+                                 : known.variance;
     };
-    Field variance(count), change(count);
+    const auto unbiased = [&](const Rung& on, std::size_t i) {
+        return on.density[family][i] - noise[i] * relative(on, i) * on.trace[q][i];
+    };
+    Field variance(count), change(count), around = lower.density[family];
     for (std::size_t i = 0; i < count; ++i) {
         // The square of what noise adds to the density is of second order, and counts where it is not small.
-        const double second = noise_[i] * known.variance * lower_.trace[q][i];
-        variance[i] = static_cast<float>(noise_[i] * known.variance * lower_.variance[q][i] + second * second);
-        change[i] = static_cast<float>(std::pow(unbiased(upper_, i) - unbiased(lower_, i), 2));
+        const double part = noise[i] * relative(lower, i), second = part * lower.trace[q][i];
+        variance[i] = static_cast<float>(part * lower.variance[q][i] + second * second);
     }
-    diffuse(variance, graph_, reach_of_variances, run_);
-    diffuse(change, graph_, reach_of_errors, run_);
+    diffuse(variance, level_.graph, reach_of_variances, run_);
     for (std::size_t i = 0; i < count; ++i) {
-        if (!active_[i] || !std::isfinite(lower_.density[family][i])) continue;
+        const double squared = std::pow(unbiased(upper, i) - unbiased(lower, i), 2);
+        change[i] = static_cast<float>(std::min(squared / (known.change * variance[i]), most_surprising));
+    }
+    diffuse(change, level_.graph, near_reach, run_);
+    Field near = change;
+    diffuse(change, level_.graph, reach_of_errors - near_reach, run_);
+    diffuse(around, level_.graph, 1, run_);
+    Field& known_bias = standing_.bias[family];
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
         // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
-        const bool misfit = rung > 0 && residual[i] > 2 * noise_[i] && lower_.size[i] * lower_.size[i] > 20 * noise_[i];
-        if (misfit && settled_[i]) dead_[family][i] = 1;
-        if (misfit || dead_[family][i]) continue;
+        const bool misfit = rung > 0 && residual[i] > 2 * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
+        if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
+        if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
-        const double noise = known.change * variance[i], per_change = 1 / (known.bias * known.bias);
-        const double bias = std::max<double>(per_change * (change[i] - noise), bias_[family][i]);
+        const double expected = known.change * variance[i];
+        const double more = std::max<double>(change[i] - usual, near[i] - usual_near);
+        const double bias = std::max<double>(expected * more / (known.bias * known.bias), known_bias[i]);
         const auto risk = static_cast<float>(variance[i] + std::max(0.0, bias));
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything.
-        const double density = lower_.density[family][i];
-        if (variance[i] < 0.1 * density * density)
-            bias_[family][i] = std::max(bias_[family][i], static_cast<float>(per_change * (change[i] - sure * noise)));
-        least_[family][i] = std::min(least_[family][i], risk);
+        const double density = lower.density[family][i];
+        if (variance[i] < 0.1 * density * density && more > sure - usual) {
+            const double step = std::sqrt(expected * (more - (sure - usual)));
+            known_bias[i] =
+                static_cast<float>(std::pow(std::max(step / known.bias, std::sqrt(double(known_bias[i]))) + step, 2));
+        }
         // Far above its own best it will not come back.
-        if (risk > 3 * least_[family][i]) dead_[family][i] = 1;
-        if (!(risk < best_[i])) continue;
-        best_[i] = risk;
-        result_.density[i] = std::max(0.0, unbiased(lower_, i));
-        result_.error[i] = std::sqrt(risk);
-        result_.normal[i] = view_[i].normal;
-        result_.tensor[i] = lower_.tensor[family][i];
-        result_.choice[i] = rung_choice(rung, static_cast<Family>(family));
+        if (standing_.settled[i]) {
+            standing_.least[family][i] = std::min(standing_.least[family][i], risk);
+            if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
+        }
+        if (!(risk < measured_.risk[i]) || std::pow(density - around[i], 2) > outlying * risk) continue;
+        measured_.risk[i] = risk;
+        measured_.density[i] = std::max(0.0, unbiased(lower, i));
+        measured_.normal[i] = lower.normal[i];
+        measured_.tensor[i] = lower.tensor[family][i];
+        measured_.choice[i] = rung_choice(rung, static_cast<Family>(family));
     }
 }
 
-void Ladder::weigh(int rung) {
-    Field residual[2] = {lower_.residual[0], lower_.residual[1]};
-    Field wider = upper_.residual[1];
-    for (Field* field : {&residual[0], &residual[1], &wider}) diffuse(*field, graph_, reach_of_variances, run_);
-    estimate_noise(rung, residual[1], wider);
-    for (int family = 0; family < families; ++family) weigh_family(rung, family, residual[of_quartic(family) ? 1 : 0]);
+void Ladder::weigh(int rung, const Rung& lower, const Rung& upper) {
+    Field residual[2] = {lower.residual[0], lower.residual[1]};
+    Field wider = upper.residual[1];
+    for (Field* field : {&residual[0], &residual[1], &wider}) diffuse(*field, level_.graph, reach_of_variances, run_);
+    estimate_noise(rung, lower, residual[1], wider);
+    for (int family = 0; family < families; ++family)
+        weigh_family(rung, family, lower, upper, residual[of_quartic(family) ? 1 : 0]);
 }
 
 /// Elements on which every family has had its best leave the ladder, once their neighbours do not need them either.
 void Ladder::let_go() {
-    std::vector<std::uint8_t> wanted(elements_.count, 0);
-    for (std::size_t i = 0; i < elements_.count; ++i) {
-        if (!active_[i]) continue;
-        for (int family = 0; family < families; ++family) wanted[i] |= dead_[family][i] ? 0 : 1;
+    const std::size_t count = level_.count();
+    std::vector<std::uint8_t> wanted(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!standing_.active[i]) continue;
+        for (int family = 0; family < families; ++family) wanted[i] |= standing_.dead[family][i] ? 0 : 1;
     }
-    for (std::size_t i = 0; i < elements_.count; ++i) {
-        if (!active_[i] || wanted[i]) continue;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!standing_.active[i] || wanted[i]) continue;
         bool needed = false;
-        for (std::size_t j = 0; j < ElementGraph::degree && graph_[i][j] >= 0; ++j)
-            needed = needed || wanted[static_cast<std::size_t>(graph_[i][j])] == 1;
-        active_[i] = needed ? 1 : 0;
+        for (std::size_t j = 0; j < ElementGraph::degree && level_.graph[i][j] >= 0; ++j)
+            needed = needed || wanted[static_cast<std::size_t>(level_.graph[i][j])] == 1;
+        standing_.active[i] = needed ? 1 : 0;
     }
+}
+
+Level lowest_level(const Elements& elements, double scale, const ElementGraph& graph) {
+    Level level;
+    const Vec3 origin = elements.position(0);
+    level.position.resize(3 * elements.count);
+    for (std::size_t i = 0; i < elements.count; ++i)
+        store(level.position.data() + 3 * i, scale * (elements.position(i) - origin));
+    level.foot = level.position;
+    level.normal.assign(elements.count, Vec3{nan, nan, nan});
+    level.graph = graph;
+    return level;
+}
+
+Measured measured_so_far(const AutomaticCurvature& result) {
+    Measured measured = nothing_measured(result.density.size());
+    for (std::size_t i = 0; i < result.density.size(); ++i)
+        if (std::isfinite(result.error[i])) measured.risk[i] = static_cast<float>(result.error[i] * result.error[i]);
+    measured.density = result.density, measured.normal = result.normal;
+    measured.tensor = result.tensor, measured.choice = result.choice;
+    return measured;
+}
+
+/// At corners of borders windows may find no surface at all.
+void borrow_on_ladder(const Level& level, Measured& measured, const Execution& run) {
+    constexpr int turns = 3;
+    std::vector<std::uint8_t> climbed(level.count());
+    for (int turn = 0; turn < turns; ++turn) {
+        for (std::size_t i = 0; i < level.count(); ++i) climbed[i] = measured.choice[i] >= first_rung_choice;
+        borrow(level, climbed, measured, {run.threads, {}});
+    }
+}
+
+bool any(const std::vector<std::uint8_t>& flags) {
+    return std::find(flags.begin(), flags.end(), 1) != flags.end();
 }
 
 }  // namespace
 
 int rung_neighbors(int rung) {
-    return static_cast<int>(look_neighbors * std::pow(growth, rung));
+    constexpr int first[rungs_of_level] = {look_neighbors, 35, 50};
+    int neighbors = first[rung % rungs_of_level];
+    for (; rung >= rungs_of_level; rung -= rungs_of_level) neighbors *= Level::group;
+    return neighbors;
 }
 
 void climb(const Elements& elements, double scale, const ElementGraph& graph, std::vector<std::uint8_t> active,
            AutomaticCurvature& result, const Execution& run) {
     // A clean cloud needs no room for rungs.
-    if (std::find(active.begin(), active.end(), 1) == active.end()) return;
-    Ladder(elements, scale, graph, std::move(active), result, run).climb(run);
+    if (!any(active)) return;
+    std::vector<Level> levels = {lowest_level(elements, scale, graph)};
+    levels.reserve(static_cast<std::size_t>(level_of(most_rungs)) + 1);
+    std::vector<Measured> measured = {measured_so_far(result)};
+    measured.reserve(levels.capacity());
+    Standing standing(std::move(active));
+    Rung lower;
+    for (int rung = 0; rung < most_rungs;) {
+        Ladder ladder(elements, levels.back(), standing, measured.back(), run);
+        const int level = level_of(rung);
+        bool on = true;
+        for (; rung < most_rungs && level_of(rung) == level; ++rung) {
+            on = rung_neighbors(rung) < static_cast<int>(elements.count) && any(standing.active);
+            if (!on) break;
+            Rung upper = ladder.step(rung);
+            if (rung > 0) {
+                ladder.weigh(rung - 1, lower, upper);
+                ladder.let_go();
+            }
+            lower = std::move(upper);
+            if (run.progress && !run.progress((rung + 1.0) / most_rungs)) throw Cancelled();
+        }
+        if (!on || rung == most_rungs) break;
+        levels.push_back(coarsened(levels.back(), {run.threads, {}}));
+        const Level& below = levels[levels.size() - 2];
+        standing = coarsened(standing, below, levels.back());
+        lower = at(lower, levels.back().representative);
+        measured.push_back(nothing_measured(levels.back().count()));
+    }
+    for (std::size_t l = levels.size() - 1; l > 0; --l)
+        refine(levels[l], measured[l], levels[l - 1], measured[l - 1], {run.threads, {}});
+    borrow_on_ladder(levels.front(), measured.front(), run);
+    const Measured& lowest = measured.front();
+    for (std::size_t i = 0; i < elements.count; ++i)
+        if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.risk[i]);
+    result.density = lowest.density, result.normal = lowest.normal;
+    result.tensor = lowest.tensor, result.choice = lowest.choice;
 }
 
 }  // namespace gaussmap

@@ -9,14 +9,14 @@
 
 namespace gaussmap {
 
-/// The fits that are tried on every rung: a quadric and a quartic in chords, and the quadric's shape operator averaged
-/// over half the neighbours it was fitted to, and over all of them.
-enum class Family : std::uint8_t { quadric, half_mean, mean, quartic };
-constexpr int families = 4;
+/// What is tried on every rung: a quadric and a quartic in chords; the quadric's shape operator averaged over half the
+/// neighbours it was fitted to, and over all of them; the slopes of the quadrics' normals over the same.
+enum class Family : std::uint8_t { quadric, half_mean, mean, half_slope, slope, quartic };
+constexpr int families = 6;
 
-/// Neighbours on a rung, from 0 up: half as many again as on the one below.
+/// Elements that a rung's fits stand on, from 0 up: threefold in three steps.
 int rung_neighbors(int rung);
-constexpr int most_rungs = 11;
+constexpr int most_rungs = 15;
 
 /// The choice that stands for a family on a rung.
 constexpr std::uint8_t first_rung_choice = 16;

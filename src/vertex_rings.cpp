@@ -22,31 +22,47 @@ void for_edges(Points vertices, Triangles faces, Body&& body) {
 }
 
 /// The squared length in which the rings about a vertex are round. On grids of unlike spacings, the nearest in space
-/// lie on one line or two, and determine nothing; the rings do.
+/// lie on one line or two, and determine nothing; the rings do. Across a border it is shorter than along it: half discs
+/// hold too few rows for a quartic.
 class RingMetric {
   public:
-    /// \param moments  sum of d dᵀ over the rings.
-    explicit RingMetric(const Symmetric3& moments) {
+    /// \param rings   differences from the vertex.
+    /// \param border  whether a border is among them.
+    RingMetric(const std::vector<Vec3>& rings, bool border) {
+        Symmetric3 moments;
+        Vec3 sum;
+        for (const Vec3 d : rings) add_product(moments, 1, d, d), sum = sum + d;
         const Eigen3 axes = eigen(moments);
         // Across the surface as along the shorter of its axes.
         const double least = std::max(axes.values[1], 1e-6 * axes.values[2]);
         axis_ = axes.vectors[2];
         along_ = least > 0 ? least / axes.values[2] - 1 : 0;
+        if (!border) return;
+
+        inward_ = sum - dot(sum, axes.vectors[0]) * axes.vectors[0];
+        inward_ = inward_ + along_ * dot(axis_, inward_) * axis_;
+        double first = 0, second = 0;
+        for (const Vec3 d : rings) first += dot(inward_, d), second += dot(inward_, d) * dot(inward_, d);
+        if (!(second > 0)) return;
+        // 0 where rings are the same on either side, 0.57 on straight borders of grids.
+        const double one_sided = first * first / (second * static_cast<double>(rings.size()));
+        deep_ = -std::min(1.2 * one_sided, 0.75) / first;
     }
 
     double operator()(Vec3 d) const {
-        const double t = dot(axis_, d);
-        return squared(d) + along_ * t * t;
+        const double t = dot(axis_, d), in = dot(inward_, d);
+        return squared(d) + along_ * t * t + deep_ * in * in;
     }
 
   private:
-    Vec3 axis_;
-    double along_;
+    Vec3 axis_, inward_;
+    double along_, deep_ = 0;
 };
 
 }  // namespace
 
-VertexRings::VertexRings(Points vertices, Triangles faces) : vertices_(vertices), offset_(vertices.count + 1) {
+VertexRings::VertexRings(Points vertices, Triangles faces)
+    : vertices_(vertices), offset_(vertices.count + 1), open_(vertices.count) {
     check_faces(faces, vertices.count);
     for_edges(vertices, faces, [&](std::int32_t from, std::int32_t) { ++offset_[static_cast<std::size_t>(from)]; });
     std::size_t sum = 0;
@@ -63,6 +79,8 @@ VertexRings::VertexRings(Points vertices, Triangles faces) : vertices_(vertices)
         offset_[v] = static_cast<std::size_t>(end - neighbor_.begin());
         std::sort(first, last);
         end = std::unique_copy(first, last, end);
+        open_[v] =
+            last - first < 2 * (end - neighbor_.begin() - static_cast<std::ptrdiff_t>(offset_[v])) || first == last;
     }
     offset_.back() = static_cast<std::size_t>(end - neighbor_.begin());
     neighbor_.resize(offset_.back());
@@ -70,65 +88,95 @@ VertexRings::VertexRings(Points vertices, Triangles faces) : vertices_(vertices)
 }
 
 void VertexRings::Room::begin(std::size_t slots) {
+    for (const std::size_t slot : taken_) slots_[slot] = -1;
+    taken_.clear();
     met_.clear();
-    if (slots_.size() < slots || ++search_ == 0) {
-        std::size_t size = 64;
-        while (size < slots) size *= 2;
-        slots_.assign(std::max(size, slots_.size()), 0);
-        search_ = 1;
-    }
+    if (slots_.size() >= slots) return;
+    std::size_t size = 64;
+    while (size < slots) size *= 2;
+    slots_.assign(size, -1);
 }
 
-bool VertexRings::Room::enter(std::int32_t vertex) {
-    const auto bits = static_cast<std::uint32_t>(vertex);
-    const std::uint64_t entry = std::uint64_t{search_} << 32 | bits;
+void VertexRings::Room::enter(std::int32_t vertex) {
     const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = (bits * std::uint64_t{0x9e3779b97f4a7c15u} >> 32) & mask;
-    for (; slots_[slot] >> 32 == search_; slot = (slot + 1) & mask)
-        if (slots_[slot] == entry) return false;
-    slots_[slot] = entry;
+    std::size_t slot = (static_cast<std::uint32_t>(vertex) * std::uint64_t{0x9e3779b97f4a7c15u} >> 32) & mask;
+    for (; slots_[slot] >= 0; slot = (slot + 1) & mask)
+        if (slots_[slot] == vertex) return;
+    slots_[slot] = vertex;
+    taken_.push_back(slot);
     met_.push_back(vertex);
     if (2 * met_.size() > slots_.size()) {
-        const std::vector<std::int32_t> again = std::move(met_);
+        const std::vector<std::int32_t> again = met_;
         begin(2 * slots_.size());
         for (const std::int32_t v : again) enter(v);
     }
-    return true;
+}
+
+/// Nearest first, ties by index, as far as the first `wanted` of all; by buckets, since squared distances on a surface
+/// are spread evenly.
+void VertexRings::Room::sort(std::size_t from, std::size_t wanted) {
+    const auto nearer = [](const Met& a, const Met& b) {
+        return a.squared < b.squared || (a.squared == b.squared && a.index < b.index);
+    };
+    constexpr std::size_t few = 64, share = 4;
+    constexpr double least = 1e-290;  // whose inverse is finite
+    const std::size_t count = nearest_.size() - from;
+    const auto begin = nearest_.begin() + static_cast<std::ptrdiff_t>(from);
+    double farthest = 0;
+    for (auto met = begin; met != nearest_.end(); ++met) farthest = std::max(farthest, met->squared);
+    if (count < few || farthest < least) return std::sort(begin, nearest_.end(), nearer);
+
+    const std::size_t buckets = count / share;
+    const auto bucket = [&, per = static_cast<double>(buckets - 1) / farthest](const Met& met) {
+        return static_cast<std::size_t>(met.squared * per);
+    };
+    ends_.assign(buckets + 1, 0);
+    for (auto met = begin; met != nearest_.end(); ++met) ++ends_[bucket(*met) + 1];
+    for (std::size_t b = 1; b <= buckets; ++b) ends_[b] += ends_[b - 1];
+    unsorted_.assign(begin, nearest_.end());
+    for (const Met& met : unsorted_) begin[static_cast<std::ptrdiff_t>(ends_[bucket(met)]++)] = met;
+    for (std::size_t b = 0, first = 0; b < buckets && from + first < wanted; first = ends_[b++])
+        std::sort(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(ends_[b]), nearer);
+}
+
+/// Whole rings until there are enough; the sizes of the first and of the first two, the vertex included.
+void VertexRings::meet(std::size_t vertex, std::size_t enough, std::size_t hub, Room& room,
+                       std::size_t (&inner)[2]) const {
+    room.enter(static_cast<std::int32_t>(vertex));
+    std::size_t rings = 0;
+    for (std::size_t at = 0; at < room.met_.size() && room.met_.size() <= enough; ++rings) {
+        for (const std::size_t end = room.met_.size(); at < end; ++at) {
+            const auto v = static_cast<std::size_t>(room.met_[at]);
+            // A fan about a hub would put all of its rim into every search.
+            if (v != vertex && degree(v) > hub) continue;
+            for (const std::int32_t other : around(v)) room.enter(other);
+        }
+        for (std::size_t r = rings; r < 2; ++r) inner[r] = room.met_.size();
+    }
 }
 
 void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* row) const {
-    const auto wanted = static_cast<std::size_t>(k), enough = wanted + wanted / 2, hub = 4 * wanted;
-    room.begin(8 * wanted);
-    room.enter(static_cast<std::int32_t>(vertex));
-    std::size_t inner = 0, rings = 0;  // vertices on the two first rings
-    for (std::size_t ring = 0; ring < room.met_.size() && room.met_.size() <= enough;) {
-        for (const std::size_t end = room.met_.size(); ring < end; ++ring) {
-            const auto v = static_cast<std::size_t>(room.met_[ring]);
-            // A fan about a hub would put all of its rim into every search.
-            if (v != vertex && degree(v) > hub) continue;
-            for (std::size_t j = offset_[v]; j < offset_[v + 1]; ++j) room.enter(neighbor_[j]);
-        }
-        if (++rings <= 2) inner = room.met_.size();
-    }
+    const auto wanted = static_cast<std::size_t>(k);
+    room.begin(4 * wanted);
+    std::size_t inner[2] = {};  // vertices met on the first ring, and on the first two
+    meet(vertex, wanted + wanted / 4, 4 * wanted, room, inner);
     const Vec3 here = load(vertices_[vertex]);
-    Symmetric3 moments;
-    for (std::size_t j = 0; j < inner; ++j) {
-        const Vec3 d = load(vertices_[room.met_[j]]) - here;
-        add_product(moments, 1, d, d);
+    room.rings_.clear();
+    bool border = false;
+    for (std::size_t j = 1; j < inner[1]; ++j) {
+        room.rings_.push_back(load(vertices_[room.met_[j]]) - here);
+        border = border || open(static_cast<std::size_t>(room.met_[j]));
     }
-    const RingMetric metric(moments);
+    const RingMetric metric(room.rings_, border);
     room.nearest_.clear();
-    for (const std::int32_t v : room.met_) {
-        const Vec3 d = load(vertices_[v]) - here;
-        if (squared(d) > 0) room.nearest_.push_back({metric(d), v});
+    std::size_t sorted = 0;
+    for (std::size_t j = 0; j < room.met_.size(); ++j) {
+        const Vec3 d = load(vertices_[room.met_[j]]) - here;
+        if (squared(d) > 0) room.nearest_.push_back({metric(d), room.met_[j]});
+        if (j + 1 == inner[0] || j + 1 == inner[1]) room.sort(sorted, wanted), sorted = room.nearest_.size();
     }
-    const auto nearer = [](const Room::Met& a, const Room::Met& b) {
-        return a.squared < b.squared || (a.squared == b.squared && a.index < b.index);
-    };
+    room.sort(sorted, wanted);
     const std::size_t found = std::min(wanted, room.nearest_.size());
-    const auto last = room.nearest_.begin() + static_cast<std::ptrdiff_t>(found);
-    if (last != room.nearest_.end()) std::nth_element(room.nearest_.begin(), last, room.nearest_.end(), nearer);
-    std::sort(room.nearest_.begin(), last, nearer);
     for (std::size_t j = 0; j < wanted; ++j) row[j] = j < found ? room.nearest_[j].index : -1;
 }
 

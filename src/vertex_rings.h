@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gaussmap/types.h"
+#include "vec.h"
 
 namespace gaussmap {
 
@@ -19,6 +21,13 @@ class VertexRings {
 
     std::size_t degree(std::size_t vertex) const { return offset_[vertex + 1] - offset_[vertex]; }
 
+    /// Whether faces do not go all the way round the vertex: on borders, and at vertices of no face.
+    bool open(std::size_t vertex) const { return open_[vertex] != 0; }
+
+    std::span<const std::int32_t> around(std::size_t vertex) const {
+        return {neighbor_.data() + offset_[vertex], degree(vertex)};
+    }
+
     /// What a search needs, used again for the next: a thread's own.
     class Room {
         friend class VertexRings;
@@ -26,24 +35,31 @@ class VertexRings {
             double squared;
             std::int32_t index;
         };
-        bool enter(std::int32_t vertex);
+        void enter(std::int32_t vertex);
         void begin(std::size_t slots);
-        std::vector<std::uint64_t> slots_;  ///< open addressing: the search's number, then the vertex
-        std::vector<std::int32_t> met_;     ///< in the order of the rings
-        std::vector<Met> nearest_;
-        std::uint32_t search_ = 0;
+        void sort(std::size_t from, std::size_t wanted);
+        std::vector<std::int32_t> slots_;  ///< open addressing; −1 where free
+        std::vector<std::size_t> taken_;   ///< of the slots
+        std::vector<std::int32_t> met_;    ///< in the order of the rings
+        std::vector<Vec3> rings_;          ///< the first two, as differences
+        std::vector<Met> nearest_, unsorted_;
+        std::vector<std::size_t> ends_;  ///< of buckets
     };
 
-    /// The k nearest of at least 3/2 k vertices met on whole rings about the vertex, nearest first, ties by index, −1
-    /// where there are fewer; lengths are such that the two first rings are round. Vertices at its very position are
-    /// passed through and left out. Time O(k log k) where degrees are bounded; rings do not grow through vertices of
-    /// more than 4 k neighbours.
+    /// Up to k vertices met on whole rings about the vertex, at least 5/4 k where there are: those of the first ring,
+    /// then those of the second, then the nearest of the others; in each part nearest first, ties by index; −1 where
+    /// there are fewer. Lengths are such that the two first rings are round: on grids of unlike spacings, and on coarse
+    /// tubes, the nearest in space are on few lines. Vertices at its very position are passed through and left out.
+    /// Time O(k) where degrees are bounded; rings do not grow through vertices of more than 4 k neighbours.
     void nearest(std::size_t vertex, int k, Room& room, std::int32_t* row) const;
 
   private:
+    void meet(std::size_t vertex, std::size_t enough, std::size_t hub, Room& room, std::size_t (&inner)[2]) const;
+
     Points vertices_;
     std::vector<std::size_t> offset_;
     std::vector<std::int32_t> neighbor_;
+    std::vector<std::uint8_t> open_;
 };
 
 }  // namespace gaussmap

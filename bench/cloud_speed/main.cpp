@@ -95,7 +95,12 @@ std::vector<Path> our_paths() {
              }},
             path("PCA + fan", CloudNormals::pca, 1, 0.4),
             path("quadratic jets + fan", CloudNormals::jet, 2, 0.01),
-            path("quartic jets + fan", CloudNormals::jet, 4, 0.01)};
+            path("quartic jets + fan", CloudNormals::jet, 4, 0.01),
+            {"auto", 0.001, [](Points points, int threads) {
+                 CloudCurvatureOptions options;
+                 options.run.threads = threads;
+                 return cloud_curvature(points, {}, options).density;
+             }}};
 }
 
 /// Microseconds a point, by the clock on the wall and of all threads' work together.

@@ -26,12 +26,12 @@ enum class Estimator {
     /// Lachaud, Romon, Thibert, Coeurjolly, "Interpolated corrected curvature measures for polygonal
     /// surfaces", SGP 2020, and the 2022 stability results. `kappa` stays the Dirichlet energy.
     corrected,
-    /// Clouds. Least squares of the normals of the k nearest neighbours, by a quadratic in the tangent plane: its
-    /// linear
-    /// part is the shape operator. Exact on spheres and cylinders with exact normals. Makes no `kappa`.
+    /// Least squares of the normals of the k nearest neighbours, by a quadratic in the tangent plane: its linear part
+    /// is
+    /// the shape operator. Exact on spheres and cylinders with exact normals. Makes no `kappa` of clouds.
     regression,
-    /// Clouds. Curvature of a polynomial of `degree` 2 to 4 through the point, fitted to the k ≥ 5 nearest neighbours.
-    /// Needs no normals, and makes its own; makes no `kappa`.
+    /// Curvature of a polynomial of `degree` 2 to 4 through the point, fitted to the k ≥ 5 nearest neighbours. Needs no
+    /// normals, and makes its own; makes no `kappa` of clouds.
     /// Cazals and Pouget, "Estimating differential quantities using polynomial fitting of osculating jets", CAGD 2005.
     jet,
 };
@@ -74,8 +74,11 @@ inline double curvedness(double k1, double k2) {
 
 struct MeshCurvatureOptions {
     Estimator estimator = Estimator::dirichlet;
-    /// How vertex normals are made when none are given.
+    /// How vertex normals are made when none are given. To fits they tell the sides; `regression` is then on fitted
+    /// ones.
     NormalWeights weights = NormalWeights::max;
+    int k = 20;  ///< `jet` and `regression`: neighbours a vertex, at least 3 (5 for jets), from whole rings of edges
+    int degree = 4;           ///< of the jet, 2 to 4 (`jet`), 1 to 4 (of the normals that `regression` fits)
     bool tensor = false;      ///< make vertex_tensor and face_tensor
     bool confidence = false;  ///< make `error`; not for dirichlet and corrected, which have no residuals
     Execution run;
@@ -85,13 +88,14 @@ struct MeshCurvature {
     std::vector<double> density;        ///< a vertex, 1/length²; NaN where undefined
     std::vector<double> kappa;          ///< a face, no unit (scale invariant); NaN where undefined
     std::vector<double> face_density;   ///< a face, kappa / area, 1/length²; NaN where undefined or of no area
-    std::vector<double> normals;        ///< the unit vertex normals used, 3 a vertex; NaN where undefined
+    std::vector<double> normals;        ///< the unit vertex normals used or fitted, 3 a vertex; NaN where undefined
     PrincipalCurvatures vertex_tensor;  ///< a vertex; empty unless asked for
     PrincipalCurvatures face_tensor;    ///< a face, in its plane, from its three normals; empty unless asked for
     std::vector<double> error;  ///< a vertex, the standard error of its density, 1/length²; empty unless asked for
     std::vector<std::uint8_t> choice;  ///< a vertex, what `automatic` took (`choice_name`); empty for other estimators
     double kappa_sum = 0;              ///< sum of the defined kappa: the integral of k1² + k2² over the surface
-    std::size_t undefined = 0;         ///< vertices whose density is NaN (no usable face)
+    std::size_t undefined = 0;  ///< vertices whose density is NaN (no usable face, or too few neighbours to fit to)
+    std::size_t lowered = 0;    ///< vertices with too few neighbours for the jet asked for, or a quartic
     std::size_t undefined_faces = 0;   ///< faces whose kappa is NaN (a non-finite corner or an undefined normal)
     std::size_t degenerate_faces = 0;  ///< faces of no area: kappa 0, adding nothing to their vertices
     double seconds_normals = 0;
@@ -104,9 +108,11 @@ struct MeshCurvature {
 /// \param faces     m index triples; any connectivity (open, non-manifold, duplicated, degenerate).
 /// \param normals   n vectors of any positive length, or empty to estimate them (`options.weights`).
 /// \throw std::invalid_argument naming the array, index and value: an index outside [0, n),
-///        or a number of normals that is neither 0 nor n; an estimator for clouds; confidence of one that has none.
-/// Time O(n + m); memory 48 bytes a vertex and 16 a face beyond the input; with the tensor 72 and 40 more.
-/// Source: the paper, eq. (3) of docs/method.md; normals by Max 1999 unless given; the shape operator by eq. (9), (10).
+///        or a number of normals that is neither 0 nor n; k < 3 (5 for jets) or a degree outside 1…4 (2…4 for jets),
+///        where they are used; confidence of an estimator that has none.
+/// Time O(n + m), fits O(n k); memory 48 bytes a vertex and 16 a face beyond the input; with the tensor 72 and 40 more.
+/// Source: the paper, eq. (3) of docs/method.md; normals by Max 1999 unless given; the shape operator by eq. (9), (10);
+/// fits by eq. (13) to (18).
 MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals = {},
                              const MeshCurvatureOptions& options = {});
 

@@ -8,7 +8,7 @@ import pytest
 
 KEYS_MESH = (
     "kind file vertices faces normals estimator k orient threads kappa density undefined undefined_faces "
-    "degenerate_faces duplicates non_finite seconds peak_bytes outputs notes"
+    "degenerate_faces duplicates non_finite lowered seconds peak_bytes outputs notes"
 ).split()
 KEYS_CLOUD = (
     "kind file vertices faces normals estimator k orient threads density undefined duplicates non_finite boundary "
@@ -300,8 +300,10 @@ def test_ascii(gaussmap, tmp_path):
 
 def test_unused_options_are_told(gaussmap):
     gaussmap("shape", "torus", "-o", "t.ply")
-    notes = gaussmap("curvature", "t.ply", "--k", 9, "--orient", "mst", "--degree", 2, "--json").json["notes"]
-    assert notes == [f"{o} is not used: this is a mesh" for o in ("--k", "--orient", "--degree")]
+    options = ["--estimator", "dirichlet", "--k", 9, "--orient", "mst", "--degree", 2, "--json"]
+    notes = gaussmap("curvature", "t.ply", *options).json["notes"]
+    fits = "it is for --estimator jet and regression"
+    assert notes == [f"{o} is not used: {why}" for o, why in zip(("--k", "--orient", "--degree"), (fits, "this is a mesh", fits))]
     notes = gaussmap("curvature", "t.ply", "--as", "cloud", "--k", 9, "--orient", "mst", "--json").json["notes"]
     assert notes == ["--orient is not used: the normals come from the file"]
     options = ["--as", "cloud", "--normals", "pca", "--degree", 2, "--json"]
@@ -357,6 +359,37 @@ def test_fits_of_a_cloud(gaussmap, tmp_path, options, normals, rmse):
     assert 0 < report["confidence"]["median_relative_error"] < 2 * rmse
     vertex = ply.read(tmp_path / "o.ply")[0]["vertex"]
     assert min(vertex["density_error"]) > 0 and min(vertex["scalar_total_curvature"]) > 0
+
+
+@pytest.mark.parametrize(
+    "options, normals, rmse",
+    [
+        (["--estimator", "jet"], "jet 4", 0.003),
+        (["--estimator", "jet", "--degree", 2, "--k", 10], "jet 2", 0.05),
+        (["--estimator", "regression"], "file", 0.02),
+        (["--estimator", "regression", "--normals", "estimate"], "jet 4", 0.02),
+        (["--estimator", "regression", "--normals", "estimate", "--degree", 3], "jet 3", 0.03),
+        (["--estimator", "regression", "--normals", "angle"], "angle", 0.2),
+    ],
+)
+def test_fits_of_a_mesh(gaussmap, tmp_path, options, normals, rmse):
+    gaussmap("shape", "torus", "--grid", "90x90", "--jitter", 0.2, "--seed", 1, "-o", "t.ply")
+    truth = ["--truth", "exact_density", "--confidence", "--tensor", "--json"]
+    report = gaussmap("curvature", "t.ply", *truth, *options, "-o", "o.ply").json
+    assert (report["estimator"], report["normals"]) == (options[1], normals)
+    assert report["notes"] == ["the vertex properties 'k1' and 'k2' of the input are replaced"]
+    assert report["k"] == (10 if "--k" in options else 20)
+    assert report["undefined"] == report["lowered"] == 0
+    assert report["truth"]["relative_rmse"] < rmse
+    elements, _ = ply.read(tmp_path / "o.ply")
+    assert min(elements["vertex"]["density_error"]) > 0 and min(elements["vertex"]["k1"]) > 0
+    assert min(elements["face"]["kappa"]) > 0
+
+
+def test_what_fits_of_a_mesh_do_not_use_is_told(gaussmap):
+    gaussmap("shape", "torus", "-o", "t.ply")
+    options = ["--estimator", "regression", "--degree", 3, "--json"]
+    assert gaussmap("curvature", "t.ply", *options).json["notes"] == ["--degree is not used: the normals are not fitted"]
 
 
 def test_what_fits_do_not_use_is_told(gaussmap):

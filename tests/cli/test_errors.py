@@ -84,14 +84,8 @@ USAGE = [
         "--estimator corrected is for meshes and cube.off is taken as a cloud; use auto, dirichlet, "
         "regression or jet",
     ),
-    *[
-        (
-            f"curvature cube.off --estimator {estimator}",
-            f"--estimator {estimator} is for clouds and cube.off is a mesh; use auto, dirichlet or corrected, or --as cloud",
-        )
-        for estimator in ("regression", "jet")
-    ],
     ("curvature cloud.xyz --estimator jet --degree 1", "--degree 1 has no curvature; --estimator jet takes 2 to 4"),
+    ("curvature cube.off --estimator jet --degree 1", "--degree 1 has no curvature; --estimator jet takes 2 to 4"),
     ("curvature cloud.xyz --estimator jet --k 4", "--k 4 is too small; --estimator jet takes at least 5"),
     *[
         (

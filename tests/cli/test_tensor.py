@@ -153,11 +153,10 @@ def test_no_keys_that_were_not_asked_for(gaussmap):
     assert not {"tensor", "confidence"} & set(report) and report["chosen"] == {"quartic 24": report["vertices"]}
 
 
-NAMES = (
-    {"none", "quadric 9", "quartic 24"}
-    | {f"{family} {int(24 * 1.5**rung)}" for rung in range(13) for family in ("quadric", "half mean quadric")}
-    | {f"{family} {int(24 * 1.5**rung)}" for rung in range(13) for family in ("mean quadric", "quartic free")}
-)
+FAMILIES = ("quadric", "half mean quadric", "mean quadric", "half slope", "slope", "quartic free")
+NAMES = {"none", "quadric 9", "quartic 24"} | {
+    f"{family} {first * 3**level}" for family in FAMILIES for first in (24, 35, 50) for level in range(5)
+}
 
 
 @pytest.mark.parametrize("noise", [0, 0.1])

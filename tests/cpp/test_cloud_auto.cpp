@@ -264,6 +264,16 @@ TEST(CloudAuto, SameForAnyNumberOfThreads) {
     }
 }
 
+TEST(CloudAuto, ManyPointsAreLookedAtInTiles) {
+    const Cloud ellipsoid = support::ellipsoid_cloud(1, 0.8, 0.6, 70000, 5);
+    const CloudCurvature clean = measure(ellipsoid.points, {}, 1);
+    expect_sound(clean, ellipsoid.count());
+    EXPECT_EQ(clean.undefined + clean.lowered, 0u);
+    EXPECT_LT(relative_rmse(clean.density, ellipsoid.density), 1e-5);
+    EXPECT_GT(covered(clean, ellipsoid.density), 0.9);
+    expect_same(clean, measure(ellipsoid.points, {}, 3));
+}
+
 TEST(CloudAuto, GivenNormalsTellTheSignsAlone) {
     Random random(11);
     const Cloud torus = clean_torus();

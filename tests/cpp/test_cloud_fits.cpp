@@ -259,12 +259,4 @@ TEST(CloudFits, Messages) {
     EXPECT_EQ(refusal([&] { cloud_curvature(sphere.points, {}, jet(5)); }), "degree = 5 is outside 1 to 4");
     EXPECT_EQ(refusal([&] { cloud_curvature(sphere.points, {}, jet(2, 4)); }),
               "k = 4 is too small; estimator = jet takes at least 5 neighbours");
-    MeshCurvatureOptions mesh;
-    const std::vector<std::int32_t> face = {0, 1, 2};
-    for (const Estimator estimator : {Estimator::jet, Estimator::regression}) {
-        mesh.estimator = estimator;
-        EXPECT_EQ(refusal([&] { mesh_curvature(sphere.points, face, {}, mesh); }),
-                  std::string("estimator = ") + estimator_name(estimator) +
-                      " is for clouds; take the vertices as one, or use dirichlet or corrected");
-    }
 }

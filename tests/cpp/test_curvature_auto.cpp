@@ -58,8 +58,20 @@ TEST(AutoMesh, FarBetterThanOneRingsUnderNoise) {
 }
 
 TEST(AutoMesh, NoWorseThanOneRingsOnGrids) {
-    for (const Surface& s : {torus(1, 0.4, 90, 50), torus(1, 0.4, 60, 90), torus_knot(2, 3, 1, 0.4, 0.15, 300, 24)})
-        EXPECT_LT(error_of(s, Estimator::automatic), 1.1 * best_of_one_rings(s));
+    const Surface surfaces[] = {torus(1, 0.4, 90, 50),
+                                torus(1, 0.4, 60, 90),
+                                torus_knot(2, 3, 1, 0.4, 0.15, 300, 24),
+                                torus_knot(2, 3, 1, 0.4, 0.15, 200, 80),
+                                figure_eight_knot(1.0 / 3, 0.1, 300, 24),
+                                torus(1, 0.1, 200, 12),
+                                torus(1, 0.5, 9, 9),
+                                torus(1, 0.7, 200, 40),
+                                ellipsoid(1, 0.7, 0.5, 3),
+                                waves(1, 1, 0.05, 0.7, 60, 60),
+                                waves(1, 1, 0.05, 0.7, 90, 30),
+                                catenoid(1, 2, 60, 30)};
+    for (const Surface& s : surfaces)
+        EXPECT_LT(error_of(s, Estimator::automatic), 1.1 * best_of_one_rings(s)) << s.density.size();
 }
 
 TEST(AutoMesh, SpheresAndPlanesAreExact) {

@@ -61,14 +61,14 @@ TEST(HausdorffBound, TellsWhereItIs) {
 
 /// Of soups of triangles the truth lies between the maximum over a fine grid and the same plus the grid's reach.
 TEST(HausdorffBound, HoldsTheTruthOfSoups) {
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         Shape a{random_points(12, seed), {}}, b{random_points(60, seed + 100), {}};
         for (std::int32_t i = 0; i < 12; ++i) a.faces.push_back(i);
         if (seed % 2)
             for (std::int32_t i = 0; i < 60; ++i) b.faces.push_back(i);
         const HausdorffInterval found = bound(a, b, 1e-5);
         double sampled = 0;
-        const int n = 60;
+        const int n = 40;
         for (std::size_t f = 0; f < a.faces.size(); f += 3)
             for (int i = 0; i <= n; ++i)
                 for (int j = 0; i + j <= n; ++j) {
@@ -111,7 +111,7 @@ TEST(HausdorffBound, NothingIsFarFromItself) {
 /// The promise of samples: never above the upper bound, and close to it.
 TEST(HausdorffBound, AgreesWithSamples) {
     const Shape a = shape_of(bumpy_sphere(1, 0.1, 4, 5)), b = shape_of(bumpy_sphere(1, 0.1, 4, 3));
-    const SurfaceDistance sampled = surface_distance(a.vertices, a.faces, b.vertices, b.faces);
+    const SurfaceDistance sampled = surface_distance(a.vertices, a.faces, b.vertices, b.faces, {100000, 0, {}});
     const HausdorffInterval forward = bound(a, b, 1e-5), backward = bound(b, a, 1e-5);
     EXPECT_GE(forward.upper, sampled.forward.max);
     EXPECT_NEAR(forward.lower, sampled.forward.max, 1e-3 * sampled.forward.max + 1e-5);
@@ -158,13 +158,13 @@ TEST(HausdorffBound, SaysWhereItGaveUp) {
 }
 
 TEST(HausdorffBound, CloudsAndDegenerateFaces) {
-    const Shape cloud{random_points(500, 1), {}}, ball = shape_of(sphere(3));
+    const Shape cloud{random_points(200, 1), {}}, ball = shape_of(sphere(3));
     const HausdorffInterval found = bound(cloud, ball, 1e-9);
     double truth = 0;
-    for (std::size_t i = 0; i < 500; ++i)
+    for (std::size_t i = 0; i < 200; ++i)
         truth = std::max(truth, static_cast<double>(ball.distance(&cloud.vertices[3 * i])));
     expect_holds(found, truth, 1e-9, "a cloud");
-    EXPECT_EQ(found.queries, 500u);
+    EXPECT_EQ(found.queries, 200u);
     // A segment as a face: its middle is the farthest.
     const Shape segment{{-1, 0, 0, 1, 0, 0, 1, 0, 0}, {0, 1, 2}}, ends{{-1, 0, 0, 1, 0, 0}, {}};
     expect_holds(bound(segment, ends, 1e-9), 1, 1e-9, "a segment");

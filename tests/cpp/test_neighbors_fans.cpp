@@ -223,6 +223,34 @@ TEST(Fans, OrderScaleAndFlipOfTheNeighborhood) {
     }
 }
 
+/// Nearest first, twelve neighbours mostly tell the fan; farthest first they never do.
+TEST(Fans, NearestFirstOrFarthestFirst) {
+    Random random(4);
+    const std::size_t k = 20, count = 6000;
+    Neighborhoods nearest(k);
+    for (std::size_t trial = 0; trial < count; ++trial) {
+        const bool lattice = trial % 3 == 0, thin = trial % 3 == 1;
+        const double tilt = random.below(2) == 0 ? 0 : 2 * random.uniform();
+        std::vector<std::array<double, 3>> offsets;
+        for (std::size_t j = 0; j < k; ++j) {
+            double x = 3 * random.normal(), y = random.normal() * (thin ? 1e-3 : 3);
+            if (lattice) x = std::round(x), y = std::round(y);
+            offsets.push_back({x, y, tilt * x + 0.1 * random.normal()});
+        }
+        std::sort(offsets.begin(), offsets.end(), [](const auto& a, const auto& b) {
+            return std::hypot(a[0], a[1], a[2]) < std::hypot(b[0], b[1], b[2]);
+        });
+        nearest.add(offsets);
+    }
+    Neighborhoods farthest = nearest;
+    for (auto row = farthest.neighbors.index.begin(); row != farthest.neighbors.index.end(); row += k)
+        std::reverse(row, row + k);
+    const Fans fans = nearest.fans(), others = farthest.fans();
+    EXPECT_EQ(fans.begin, others.begin);
+    EXPECT_EQ(fans.index, others.index);
+    EXPECT_EQ(fans.closed, others.closed);
+}
+
 TEST(Fans, SameForAnyNumberOfThreads) {
     const support::Cloud cloud = support::torus_cloud(1, 0.5, 0.05, 4);
     const Neighbors neighbors = nearest_neighbors(cloud.points, 20);

@@ -106,8 +106,8 @@ TEST(SampleSurface, IsUniformByArea) {
     const Mesh mesh = strip(50);
     const double total = area(mesh);
     for (const SamplingMethod method : methods)
-        for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-            const std::size_t count = 20000;
+        for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+            const std::size_t count = 10000;
             const SurfacePoints points = sample(mesh, count, method, seed);
             std::vector<double> counts(50);
             for (const std::int32_t f : points.face) ++counts[static_cast<std::size_t>(f)];
@@ -126,15 +126,15 @@ TEST(SampleSurface, IsUniformByArea) {
 TEST(SampleSurface, IsUniformWithinATriangle) {
     const Mesh mesh{{0, 0, 0, 3, 0, 0, 1, 0.5, 2}, {0, 1, 2}};
     for (const SamplingMethod method : methods) {
-        const SurfacePoints points = sample(mesh, 30000, method, 5);
+        const SurfacePoints points = sample(mesh, 15000, method, 5);
         for (int c = 0; c < 3; ++c) {
             double sum = 0, squares = 0;
             for (std::size_t i = 0; i < points.count(); ++i) {
                 const double w = points.weights[3 * i + static_cast<std::size_t>(c)];
                 sum += w, squares += w * w;
             }
-            EXPECT_NEAR(sum / 30000, 1.0 / 3, 0.006);
-            EXPECT_NEAR(squares / 30000, 1.0 / 6, 0.006);
+            EXPECT_NEAR(sum / 15000, 1.0 / 3, 0.008);
+            EXPECT_NEAR(squares / 15000, 1.0 / 6, 0.008);
         }
     }
 }

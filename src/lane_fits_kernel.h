@@ -1,0 +1,254 @@
+// The fits of lane_fits.h for one instruction set. Included by lane_fits_<set>.cpp alone, each compiled for its set;
+// nothing here may have external linkage but the entry that each defines, or the linker could pick a copy that the
+// machine cannot run.
+#pragma once
+
+#ifdef __SSE2__
+#include <immintrin.h>
+#endif
+
+#include "lane_fits.h"
+
+namespace gaussmap {
+namespace {
+
+#define GAUSSMAP_INLINE inline __attribute__((always_inline))
+
+// Lanes that go through together.
+#ifdef __AVX2__
+constexpr int together = 4;
+#else
+constexpr int together = 2;
+#endif
+typedef double Real __attribute__((vector_size(8 * together)));
+typedef long long Mask __attribute__((vector_size(8 * together)));
+
+GAUSSMAP_INLINE Real load(const double* p) {
+    return *reinterpret_cast<const Real*>(p);
+}
+GAUSSMAP_INLINE void store(double* p, Real a) {
+    *reinterpret_cast<Real*>(p) = a;
+}
+GAUSSMAP_INLINE Real all(double a) {
+    return Real{} + a;
+}
+GAUSSMAP_INLINE Real select(Mask mask, Real yes, Real no) {
+    return (Real)((mask & (Mask)yes) | (~mask & (Mask)no));
+}
+
+// Compilers do not make one instruction of a loop of square roots over lanes.
+GAUSSMAP_INLINE Real square_root(Real a) {
+#if defined __AVX2__
+    return (Real)_mm256_sqrt_pd((__m256d)a);
+#elif defined __SSE2__
+    return (Real)_mm_sqrt_pd((__m128d)a);
+#else
+    Real root;
+    for (int l = 0; l < together; ++l) root[l] = __builtin_sqrt(a[l]);
+    return root;
+#endif
+}
+
+/// A neighbour in its chart.
+struct Datum {
+    Real u, v, height, weight;
+};
+
+/// Neighbour j of the lanes from `lane` on.
+template <bool Chord, bool Weighted>
+GAUSSMAP_INLINE Datum datum(const LanePatches& patches, const LaneRange& range, int lane, int j) {
+    const Real x = load(&patches.d[j][0][lane]), y = load(&patches.d[j][1][lane]), z = load(&patches.d[j][2][lane]);
+    const auto along = [&](int a) {
+        return x * load(&patches.axis[a][0][lane]) + y * load(&patches.axis[a][1][lane]) +
+               z * load(&patches.axis[a][2][lane]);
+    };
+    Datum datum = {along(0), along(1), along(2), all(1)};
+    const Real flat = datum.u * datum.u + datum.v * datum.v, squared = flat + datum.height * datum.height;
+    if (Chord) {
+        // Where the surface stands upright the direction is lost: no farther out than four times the projection.
+        const Real ratio = squared / flat;
+        const Real stretch = square_root(select(ratio < 16, ratio, select(flat > 0, all(16), all(1))));
+        datum.u *= stretch, datum.v *= stretch;
+    }
+    if (Weighted) {
+        // Nearer than a fifth of the unit all weigh alike, so that a pair of almost equal points does not decide alone.
+        const Real r = 1 / select(squared > 0.04, squared, all(0.04)), r2 = r * r;
+        datum.weight = r2 * r2 * r;
+    }
+    Mask there = {};
+    for (int l = 0; l < together; ++l) there[l] = -(long long)(j >= range.first[lane + l] && j < range.last[lane + l]);
+    datum.weight = select(there, datum.weight, Real{});
+    return datum;
+}
+
+/// Sums of one group of lanes.
+template <int Degree>
+struct Sums {
+    static constexpr int terms = monomials(Degree), powers = monomials(2 * Degree);
+    Real power[powers], height[terms], square;
+};
+
+/// Two neighbours at a time, so that the sums are loaded and stored once for both.
+template <int Degree>
+GAUSSMAP_INLINE void add(const Datum& a, const Datum& b, Sums<Degree>& sums) {
+    Real at_a[2 * Degree + 1], at_b[2 * Degree + 1];  // weighted monomials of one degree
+    at_a[0] = a.weight, at_b[0] = b.weight;
+    int at = 0;
+#pragma GCC unroll 9
+    for (int degree = 0; degree <= 2 * Degree; ++degree) {
+        if (degree > 0) {
+            at_a[degree] = a.v * at_a[degree - 1], at_b[degree] = b.v * at_b[degree - 1];
+#pragma GCC unroll 9
+            for (int i = 0; i < degree; ++i) at_a[i] = a.u * at_a[i], at_b[i] = b.u * at_b[i];
+        }
+#pragma GCC unroll 9
+        for (int i = 0; i <= degree; ++i, ++at) {
+            sums.power[at] += at_a[i] + at_b[i];
+            if (degree <= Degree) sums.height[at] += a.height * at_a[i] + b.height * at_b[i];
+        }
+    }
+    sums.square += a.weight * a.height * a.height + b.weight * b.height * b.height;
+}
+
+template <int Degree, bool Chord, bool Weighted>
+void collect(const LanePatches& patches, const LaneRange& range, bool fresh, LaneSums& to) {
+    int first = range.first[0], last = range.last[0];
+    for (int l = 1; l < fit_lanes; ++l) {
+        first = range.first[l] < first ? range.first[l] : first;
+        last = range.last[l] > last ? range.last[l] : last;
+    }
+    for (int lane = 0; lane < fit_lanes; lane += together) {
+        Sums<Degree> sums = {};
+        if (!fresh) {
+            for (int s = 0; s < sums.powers; ++s) sums.power[s] = load(&to.at[to.power + s][lane]);
+            for (int s = 0; s < sums.terms; ++s) sums.height[s] = load(&to.at[to.height + s][lane]);
+            sums.square = load(&to.at[to.square][lane]);
+        }
+        for (int j = first; j < last; j += 2) {
+            const int next = j + 1 < most_fitted ? j + 1 : j;
+            const Datum a = datum<Chord, Weighted>(patches, range, lane, j);
+            Datum b = datum<Chord, Weighted>(patches, range, lane, next);
+            if (next == j) b.weight = Real{};
+            add(a, b, sums);
+        }
+        for (int s = 0; s < sums.powers; ++s) store(&to.at[to.power + s][lane], sums.power[s]);
+        for (int s = 0; s < sums.terms; ++s) store(&to.at[to.height + s][lane], sums.height[s]);
+        store(&to.at[to.square][lane], sums.square);
+    }
+}
+
+template <int Degree>
+void collect_as_told(const LanePatches& patches, const LaneRange& range, bool fresh, LaneSums& sums) {
+    if (range.chart == Chart::chord)
+        (range.weighted ? collect<Degree, true, true> : collect<Degree, true, false>)(patches, range, fresh, sums);
+    else
+        (range.weighted ? collect<Degree, false, true> : collect<Degree, false, false>)(patches, range, fresh, sums);
+}
+
+/// Where the normal equations are among the sums: row r of column c. The right side is one more row, and what fills up
+/// to whole groups of four is of no use.
+template <int Degree, bool Constant>
+struct NormalEquations {
+    static constexpr int skip = Constant ? 0 : 1, unknowns = monomials(Degree) - skip,
+                         rows = (unknowns + 1 + 3) / 4 * 4;
+    int sum[unknowns][rows] = {};
+    constexpr NormalEquations() {
+        int degree[unknowns] = {}, power_of_v[unknowns] = {};
+        for (int d = skip, at = 0; d <= Degree; ++d)
+            for (int j = 0; j <= d; ++j, ++at) degree[at] = d, power_of_v[at] = j;
+        for (int c = 0; c < unknowns; ++c) {
+            for (int r = 0; r < unknowns; ++r) {
+                const int d = degree[r] + degree[c];
+                sum[c][r] = LaneSums::power + d * (d + 1) / 2 + power_of_v[r] + power_of_v[c];
+            }
+            sum[c][unknowns] = LaneSums::height + c + skip;
+        }
+    }
+};
+
+/// L D Lᵀ of the normal equations, a column at a time, four rows of it at once.
+template <int Degree, bool Constant>
+struct Factors {
+    static constexpr NormalEquations<Degree, Constant> equations = {};
+    static constexpr int n = equations.unknowns, rows = equations.rows;
+    Real low[n][rows], raw[n][rows];  ///< entries [c][r] of L and of L D, r ≥ c / 4 · 4
+    Real inverse[n];                  ///< of D
+    Mask determined = Mask{} - 1;
+
+    GAUSSMAP_INLINE Factors(const LaneSums& sums, int lane) {
+        // Of the diagonal: a monomial that the others match to the root of this is not determined.
+        constexpr double rank_tolerance = 1e-6;
+        for (int c = 0; c < n; ++c) {
+            const int* const from = equations.sum[c];
+            for (int r = c / 4 * 4; r < rows; r += 4) {
+                Real a[4];
+                for (int i = 0; i < 4; ++i) a[i] = load(&sums.at[from[r + i]][lane]);
+                // The element itself, where all monomials but the constant are 0.
+                if (Constant && c == 0 && r == 0) a[0] += 1;
+                for (int k = 0; k < c; ++k)
+                    for (int i = 0; i < 4; ++i) a[i] -= low[k][r + i] * raw[k][c];
+                for (int i = 0; i < 4; ++i) raw[c][r + i] = a[i];
+            }
+            const Real pivot = raw[c][c], diagonal = load(&sums.at[from[c]][lane]) + (Constant && c == 0 ? 1 : 0);
+            determined &= (pivot > rank_tolerance * diagonal) & (diagonal <= __DBL_MAX__);
+            inverse[c] = 1 / pivot;
+            for (int r = c / 4 * 4; r < rows; ++r) low[c][r] = r > c ? raw[c][r] * inverse[c] : Real{};
+        }
+    }
+};
+
+/// Of the second derivatives: products of columns of the inverse of L, from their diagonals on.
+template <int Degree, bool Constant>
+GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, int lane, LaneFields& fields) {
+    constexpr int n = factors.n, begin = 3 - factors.equations.skip;
+    constexpr double factor[3] = {2, 1, 2};
+    Real column[3][n];
+    for (int q = 0; q < 3; ++q) {
+        for (int i = begin; i < n; ++i) column[q][i] = all(i == begin + q ? 1 : 0);
+        for (int k = begin + q; k < n; ++k)
+            for (int i = k + 1; i < n; ++i) column[q][i] -= factors.low[k][i] * column[q][k];
+    }
+    for (int p = 0; p < 3; ++p)
+        for (int q = 0; q <= p; ++q) {
+            Real value = {};
+            for (int i = begin + p; i < n; ++i) value += column[p][i] * column[q][i] * factors.inverse[i];
+            value *= factor[p] * factor[q];
+            store(&fields.covariance[p][q][lane], value);
+            store(&fields.covariance[q][p][lane], value);
+        }
+}
+
+template <int Degree, bool Constant>
+void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fields) {
+    const Factors<Degree, Constant> factors(sums, lane);
+    constexpr int n = factors.n, skip = factors.equations.skip;
+    Real residual = load(&sums.at[sums.square][lane]), x[n];
+    for (int k = 0; k < n; ++k) {
+        residual -= factors.raw[k][n] * factors.low[k][n];
+        x[k] = factors.low[k][n];
+    }
+    store(&fields.residual[lane], select(residual > 0, residual, Real{}));
+    for (int i = n - 1; i > 0; --i)
+        for (int k = 0; k < i; ++k) x[k] -= factors.low[k][i] * x[i];
+    if (!Constant) store(&fields.c[0][lane], Real{});
+    for (int m = skip; m < monomials(2); ++m) store(&fields.c[m][lane], x[m - skip]);
+    if (covariance) store_covariance(factors, lane, fields);
+    for (int l = 0; l < together; ++l) fields.determined[lane + l] = factors.determined[l] != 0;
+}
+
+template <int Degree>
+void solve(const LaneSums& sums, bool constant, bool covariance, LaneFields& fields) {
+    for (int lane = 0; lane < fit_lanes; lane += together) {
+        if (constant)
+            solve_lanes<Degree, true>(sums, covariance, lane, fields);
+        else
+            solve_lanes<Degree, false>(sums, covariance, lane, fields);
+    }
+}
+
+constexpr LaneFitKernel kernel = {{collect_as_told<2>, solve<2>}, {collect_as_told<4>, solve<4>}};
+
+#undef GAUSSMAP_INLINE
+
+}  // namespace
+}  // namespace gaussmap

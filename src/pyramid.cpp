@@ -1,0 +1,211 @@
+#include "pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "frame.h"
+#include "gaussmap/neighbors.h"
+#include "parallel.h"
+
+namespace gaussmap {
+namespace {
+
+constexpr std::size_t grain = 1024;
+/// Cosine of normals that look too far apart to be of one sheet.
+constexpr double one_sheet = 0.3;
+
+void build_graph(Level& level, const NeighborIndex& feet, const Execution& run) {
+    constexpr std::size_t degree = ElementGraph::degree;
+    const std::size_t count = level.count();
+    level.graph.index.assign(count * degree, -1);
+    const NearestPoints found = feet.nearest(Points(level.foot), static_cast<int>(degree + 1), false, run);
+    for (std::size_t i = 0; i < count; ++i) {
+        std::size_t at = 0;
+        for (std::size_t j = 0; j <= degree && at < degree; ++j) {
+            const std::int32_t other = found.index[i * found.k + j];
+            if (other >= 0 && static_cast<std::size_t>(other) != i) level.graph.index[i * degree + at++] = other;
+        }
+    }
+}
+
+/// Squared distance of the farthest neighbour in the graph.
+double reach(const Level& level, std::size_t i) {
+    double farthest = 0;
+    for (std::size_t j = 0; j < ElementGraph::degree && level.graph[i][j] >= 0; ++j)
+        farthest =
+            std::max(farthest, squared(level.foot_of(static_cast<std::size_t>(level.graph[i][j])) - level.foot_of(i)));
+    return farthest;
+}
+
+/// Least squares for polynomials of several values at once; only the values at the origin are asked for.
+class LocalFit {
+  public:
+    static constexpr int values = 10;
+
+    void add(double weight, double u, double v, const std::array<double, values>& value) {
+        // The constant comes last, so that the last row of the triangular system holds all that is asked for.
+        const double m[most] = {u * u, u * v, v * v, u, v, 1};
+        for (int i = 0; i < most; ++i) {
+            for (int j = 0; j <= i; ++j) a_[i][j] += weight * m[i] * m[j];
+            for (int s = 0; s < values; ++s) y_[i][s] += weight * m[i] * value[static_cast<std::size_t>(s)];
+        }
+        ++count_;
+    }
+
+    /// Of a quadric if asked for; of a plane where the data do not determine one well, else the mean.
+    std::array<double, values> at_origin(bool quadric) const {
+        std::array<double, values> result;
+        if (quadric && count_ >= 9 && solve<6>(result)) return result;
+        if (count_ >= 5 && solve<3>(result)) return result;
+        solve<1>(result);
+        return result;
+    }
+
+  private:
+    template <int Terms>
+    bool solve(std::array<double, values>& result) const {
+        constexpr double rank_tolerance = 0.02;
+        constexpr int first = most - Terms, last = Terms - 1;
+        double a[Terms][Terms], scale[Terms];
+        for (int i = 0; i < Terms; ++i) {
+            scale[i] = 1 / std::sqrt(a_[first + i][first + i]);
+            for (int j = 0; j <= i; ++j) {
+                double value = i == j ? 1 : a_[first + i][first + j] * scale[i] * scale[j];
+                for (int k = 0; k < j; ++k) value -= a[i][k] * a[j][k];
+                if (i == j && !(value > rank_tolerance)) return false;
+                a[i][j] = i == j ? std::sqrt(value) : value / a[j][j];
+            }
+        }
+        for (int s = 0; s < values; ++s) {
+            double y[Terms];
+            for (int i = 0; i < Terms; ++i) {
+                y[i] = y_[first + i][s] * scale[i];
+                for (int k = 0; k < i; ++k) y[i] -= a[i][k] * y[k];
+                y[i] /= a[i][i];
+            }
+            result[static_cast<std::size_t>(s)] = y[last] / a[last][last] * scale[last];
+        }
+        return true;
+    }
+
+    static constexpr int most = 6;
+    double a_[most][most] = {}, y_[most][values] = {};
+    int count_ = 0;
+};
+
+/// Errors are worlds apart where one squared is this many times the other.
+constexpr float apart = 9;
+
+/// What is known about the element `from`, interpolated among it and its neighbours at a foot nearby, put in
+/// place i.
+void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, bool quadric, Measured& result,
+                 std::size_t i) {
+    const Vec3 normal = known.normal[from];
+    const Frame frame = frame_about(normal);
+    const double radius2 = reach(level, from);
+    // Far away nothing is known.
+    if (squared(level.foot_of(from) - foot) > 16 * radius2) return;
+    const double unit = 1 / std::sqrt(std::max(radius2, std::numeric_limits<double>::min()));
+    LocalFit fit;
+    const auto take = [&](std::size_t g) {
+        if (!(known.risk[g] < apart * known.risk[from])) return;
+        const double along = dot(known.normal[g], normal);
+        if (!(std::abs(along) >= one_sheet)) return;
+        const double sign = along < 0 ? -1 : 1;
+        const Vec3 there = sign * known.normal[g], d = unit * (level.foot_of(g) - foot);
+        // Nearly through the nearest; their errors are alike anyway.
+        const double r = 1 / (squared(d) + 0.02), weight = r * r;
+        const Symmetric3 t = carried(known.tensor[g], there, normal);
+        fit.add(weight, dot(d, frame.u), dot(d, frame.v),
+                {known.density[g], sign * t.xx, sign * t.xy, sign * t.xz, sign * t.yy, sign * t.yz, sign * t.zz,
+                 there.x, there.y, there.z});
+    };
+    take(from);
+    for (std::size_t j = 0; j < ElementGraph::degree && level.graph[from][j] >= 0; ++j)
+        take(static_cast<std::size_t>(level.graph[from][j]));
+    const auto value = fit.at_origin(quadric);
+    const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
+    result.density[i] = std::max(0.0, value[0]);
+    result.risk[i] = known.risk[from];
+    result.normal[i] = turned;
+    result.tensor[i] = carried({value[1], value[2], value[3], value[4], value[5], value[6]}, normal, turned);
+    result.choice[i] = known.choice[from];
+}
+
+}  // namespace
+
+Level coarsened(Level& level, const Execution& run) {
+    Level above;
+    const std::size_t count = level.count(), groups = (count + Level::group - 1) / Level::group;
+    above.members = level.members * Level::group;
+    above.position.resize(3 * groups);
+    above.foot.resize(3 * groups);
+    above.normal.resize(groups);
+    above.representative.resize(groups);
+    const std::vector<std::int32_t> order = spatial_order(Points(level.foot), run);
+    for_blocks(groups, grain, {run.threads, {}}, [&](std::size_t, std::size_t g, std::size_t last) {
+        for (; g < last; ++g) {
+            const std::size_t begin = g * Level::group, end = std::min(count, begin + Level::group);
+            Vec3 middle;
+            for (std::size_t j = begin; j < end; ++j)
+                middle = middle + level.foot_of(static_cast<std::size_t>(order[j]));
+            middle = 1.0 / static_cast<double>(end - begin) * middle;
+            std::size_t chosen = static_cast<std::size_t>(order[begin]);
+            for (std::size_t j = begin + 1; j < end; ++j) {
+                const auto other = static_cast<std::size_t>(order[j]);
+                if (squared(level.foot_of(other) - middle) < squared(level.foot_of(chosen) - middle)) chosen = other;
+            }
+            const double near = 4 * reach(level, chosen);
+            const Vec3 normal = level.normal[chosen];
+            double height = 0;
+            int members = 0;
+            for (std::size_t j = begin; j < end; ++j) {
+                const auto other = static_cast<std::size_t>(order[j]);
+                const double along = dot(level.normal[other], normal);
+                if (squared(level.foot_of(other) - level.foot_of(chosen)) > near) continue;
+                if (other != chosen && !(std::abs(along) >= one_sheet)) continue;
+                const double over = dot(level.at(other) - level.foot_of(other), level.normal[other]);
+                if (!std::isfinite(over)) continue;
+                height += along < 0 ? -over : over;
+                ++members;
+            }
+            const Vec3 foot = level.foot_of(chosen);
+            store(above.foot.data() + 3 * g, foot);
+            store(above.position.data() + 3 * g, members > 0 ? foot + height / members * normal : foot);
+            above.normal[g] = normal;
+            above.representative[g] = static_cast<std::int32_t>(chosen);
+        }
+    });
+    const NeighborIndex feet(Points(above.foot), run);
+    build_graph(above, feet, run);
+    level.parent = feet.nearest(Points(level.foot), 1, false, run).index;
+    return above;
+}
+
+void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run) {
+    for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
+            const auto parent = static_cast<std::size_t>(level.parent[i]);
+            if (coarse.risk[parent] < fine.risk[i]) interpolate(above, coarse, parent, level.foot_of(i), true, fine, i);
+        }
+    });
+}
+
+void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured& measured, const Execution& run) {
+    const Measured known = measured;
+    for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
+            std::size_t best = i;
+            for (std::size_t j = 0; j < ElementGraph::degree && level.graph[i][j] >= 0; ++j) {
+                const auto other = static_cast<std::size_t>(level.graph[i][j]);
+                if (lends[other] && known.risk[other] < known.risk[best]) best = other;
+            }
+            if (apart * known.risk[best] < known.risk[i])
+                interpolate(level, known, best, level.foot_of(i), false, measured, i);
+        }
+    });
+}
+
+}  // namespace gaussmap

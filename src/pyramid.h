@@ -1,0 +1,51 @@
+// A noisy surface, coarser from level to level: groups of near elements become one whose noise is less.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "element_graph.h"
+#include "gaussmap/types.h"
+#include "shape_tensor.h"
+#include "vec.h"
+
+namespace gaussmap {
+
+struct Level {
+    static constexpr int group = 3;  ///< elements that one of the next level stands for
+
+    std::vector<double> position;  ///< x y z …
+    std::vector<double> foot;      ///< x y z …, where the surface is thought to be under each element
+    std::vector<Vec3> normal;      ///< there, unit; not finite where unknown
+    ElementGraph graph;
+    std::vector<std::int32_t> parent;  ///< of each element, the nearest of the next level; empty at the top
+    std::vector<std::int32_t>
+        representative;  ///< the element of the level below at whose foot each one is; empty below
+    double members = 1;  ///< elements of the lowest level that one stands for
+
+    std::size_t count() const { return position.size() / 3; }
+    Vec3 at(std::size_t i) const { return load(position.data() + 3 * i); }
+    Vec3 foot_of(std::size_t i) const { return load(foot.data() + 3 * i); }
+};
+
+/// Each group of three along a space-filling curve becomes an element over the foot of its middle member, at the mean
+/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Fills `level.parent`.
+Level coarsened(Level& level, const Execution& run);
+
+/// What was measured at the elements of a level.
+struct Measured {
+    std::vector<double> density;
+    std::vector<float> risk;  ///< expected squared error of the density; infinite where nothing was measured
+    std::vector<Vec3> normal;
+    std::vector<Symmetric3> tensor;
+    std::vector<std::uint8_t> choice;
+};
+
+/// Give the elements of a level what the next one above promises to know better, by interpolation between feet.
+void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run);
+
+/// Give elements that know far worse than a neighbour that lends what that one knows, interpolated likewise.
+void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured& measured, const Execution& run);
+
+}  // namespace gaussmap
