@@ -6,6 +6,7 @@
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
+#   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -13,7 +14,7 @@ SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
-THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling
+THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling test_decimate
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
@@ -22,7 +23,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -89,6 +90,12 @@ bench-distance: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_closest gaussmap_cli
 	/usr/bin/python3 bench/distance.py build/bench $(IN)
+
+bench-decimate: packages = packages.txt bench/packages.txt
+bench-decimate: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_decimate
+	/usr/bin/python3 bench/decimate.py build/bench $(IN)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null

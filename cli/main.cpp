@@ -24,6 +24,7 @@ struct Verb {
 constexpr Verb verbs[] = {
     {"curvature", "IN [-o OUT]…", "total curvature of a mesh or a point cloud", curvature},
     {"normals", "IN -o OUT", "unit normals of a mesh, or of a cloud, oriented", normals},
+    {"decimate", "IN -o OUT", "fewer triangles for the same surface, features kept", decimate},
     {"compare", "A B", "distances between two meshes or clouds, both ways", compare},
     {"sample", "MESH -o OUT", "points on a mesh: Poisson-disk, nonuniform, random", sample},
     {"shape", "NAME -o OUT", "analytic surfaces with exact normals and curvature", shape},

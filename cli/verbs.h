@@ -6,6 +6,7 @@ namespace cli {
 void curvature(int argc, char** argv);
 void normals(int argc, char** argv);
 void compare(int argc, char** argv);
+void decimate(int argc, char** argv);
 void sample(int argc, char** argv);
 void shape(int argc, char** argv);
 void convert(int argc, char** argv);

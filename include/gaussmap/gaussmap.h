@@ -7,6 +7,7 @@
 //   normals.h    unit normals of meshes and clouds, orientation
 //   neighbors.h  k nearest neighbours, fans, points without repetitions
 //   distance.h   exact closest points; distances of surfaces and clouds, sampled or bounded
+//   decimate.h   fewer triangles for the same surface
 //   sampling.h   points on a surface: at random, Poisson-disk
 //   surfaces.h   analytic surfaces with exact normals and curvature
 //   inspect.h    boundary, non-manifold, degenerate, duplicate: what is in a file
@@ -22,6 +23,7 @@
 #pragma once
 
 #include "gaussmap/curvature.h"
+#include "gaussmap/decimate.h"
 #include "gaussmap/distance.h"
 #include "gaussmap/inspect.h"
 #include "gaussmap/io.h"

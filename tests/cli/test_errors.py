@@ -37,7 +37,7 @@ def files(tmp_path):
 USAGE = [
     ("curvatur x.ply", "unknown verb 'curvatur'; did you mean 'curvature'?"),
     ("inof x.ply", "unknown verb 'inof'; did you mean 'info'?"),
-    ("paint x.ply", "unknown verb 'paint'; the verbs are curvature, normals, compare, sample, shape, view, convert, info"),
+    ("paint x.ply", "unknown verb 'paint'; the verbs are curvature, normals, decimate, compare, sample, shape, view, convert, info"),
     ("--verison", "unknown option '--verison'; did you mean '--version'?; options come after the verb"),
     ("--json", "unknown option '--json'; options come after the verb"),
     ("curvature", "curvature: IN is missing; write: gaussmap curvature IN [-o OUT]… [options]"),

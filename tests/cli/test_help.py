@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-VERBS = ["curvature", "normals", "compare", "sample", "shape", "view", "convert", "info"]
+VERBS = ["curvature", "normals", "compare", "sample", "shape", "view", "convert", "info", "decimate"]
 OPTIONS = {
     "curvature": "--as --normals --estimator --k --degree --orient --tensor --confidence --choice --truth "
     "--color --output --format --ascii",
@@ -18,6 +18,8 @@ OPTIONS = {
     "view": "--field --as --range --size --views --from --up --output",
     "convert": "--weld --triangulate --output --format --ascii",
     "info": "",
+    "decimate": "--faces --ratio --error --method --objective --weight --fast --preserve-boundary --lock-border "
+    "--feature-angle --allow-topology --weld --output --format --ascii",
 }
 
 

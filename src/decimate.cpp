@@ -1,0 +1,240 @@
+// The steps of a decimation: what can be worked on, the cheapest collapses, the fit, and what the result came from.
+
+#include "gaussmap/decimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "check.h"
+#include "clock.h"
+#include "decimation_input.h"
+#include "decimation_sources.h"
+#include "gaussmap/curvature.h"
+#include "gaussmap/distance.h"
+#include "greedy_collapse.h"
+#include "parallel.h"
+#include "ring_mesh.h"
+#include "surface_rounds.h"
+#include "vec.h"
+
+namespace gaussmap {
+namespace {
+
+void check(Points vertices, Triangles faces, const DecimateOptions& options) {
+    check_faces(faces, vertices.count);
+    if (!options.seams.empty()) check_count("seams", options.seams.size(), 3 * faces.count, "corners");
+    if (!(options.feature_angle >= 0 && options.feature_angle <= 180))
+        throw std::invalid_argument("feature_angle = " + std::to_string(options.feature_angle) +
+                                    " is outside [0, 180]");
+    if (!(options.error >= 0) || !std::isfinite(options.error))
+        throw std::invalid_argument("error = " + std::to_string(options.error) + " must be finite and not negative");
+}
+
+/// (density / median)^exponent of each vertex, held within a factor of 16 of 1 so that neither planes nor creases rule
+/// alone.
+std::vector<double> curvature_weights(const DecimationInput& in, double exponent, const Execution& run) {
+    std::vector<double> weight(in.positions.size(), 1);
+    const std::vector<double> flat = in.flat();
+    MeshCurvatureOptions options;
+    options.run.threads = run.threads;
+    const std::vector<double> density = mesh_curvature(flat, in.corners, {}, options).density;
+    std::vector<double> defined;
+    for (const double d : density)
+        if (d > 0 && std::isfinite(d)) defined.push_back(d);
+    if (defined.empty()) return weight;
+    const auto middle = defined.begin() + static_cast<std::ptrdiff_t>(defined.size() / 2);
+    std::nth_element(defined.begin(), middle, defined.end());
+    for (std::size_t v = 0; v < density.size(); ++v)
+        if (std::isfinite(density[v])) weight[v] = std::clamp(std::pow(density[v] / *middle, exponent), 1.0 / 16, 16.0);
+    return weight;
+}
+
+void tag_seams(RingMesh& mesh, const DecimationInput& in, const std::vector<std::uint8_t>& seams) {
+    if (seams.empty()) return;
+    for (std::size_t f = 0; f < in.faces.size(); ++f)
+        for (std::size_t k = 0; k < 3; ++k) {
+            if (!seams[3 * in.faces[f] + (k + in.rotation[f]) % 3]) continue;
+            const auto corner = static_cast<std::int32_t>(3 * f + k);
+            mesh.tag(corner);
+            // Both faces know, whichever of them was told.
+            if (const std::int32_t twin = mesh.twin(corner); twin >= 0) mesh.tag(twin);
+        }
+}
+
+RingMesh tagged_mesh(const DecimationInput& in, const DecimateOptions& options) {
+    RingMesh mesh(in.positions, in.corners);
+    mesh.tag_irregular_sides();
+    if (options.feature_angle < 180) mesh.tag_features(std::cos(options.feature_angle * std::numbers::pi / 180));
+    tag_seams(mesh, in, options.seams);
+    mesh.find_kinds();
+    if (options.lock_border) std::replace(mesh.kind.begin(), mesh.kind.end(), VertexKind::curve, VertexKind::corner);
+    return mesh;
+}
+
+std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, const DecimateOptions& options) {
+    GreedyOptions greedy;
+    greedy.cost = options.method == DecimationMethod::edge                  ? CollapseCost::length
+                  : options.method == DecimationMethod::qem || options.fast ? CollapseCost::inherited
+                                                                            : CollapseCost::present;
+    greedy.faces = options.faces;
+    greedy.border_weight = options.preserve_boundary ? 1000 : 1;
+    greedy.allow_topology = options.allow_topology;
+    greedy.run = part_of(options.run, 0.05, 0.5);
+    if (!options.weights) return collapse_cheapest(mesh, std::vector<double>(in.positions.size(), 1), greedy);
+    // What is fitted afterwards needs less of a push: a half measured worse in the mean and no better at the maximum.
+    const double exponent = greedy.cost == CollapseCost::present ? 0.25 : 0.5;
+    return collapse_cheapest(mesh, curvature_weights(in, exponent, options.run), greedy);
+}
+
+/// The sides that are left, counted by why they cannot collapse.
+void count_refusals(RingMesh& mesh, bool allow_topology, Decimation& out) {
+    for (std::size_t c = 0; c < mesh.vertex.size(); ++c) {
+        const auto corner = static_cast<std::int32_t>(c);
+        if (mesh.vertex[c] < 0) continue;
+        const std::int32_t a = mesh.vertex[RingMesh::after(corner)], b = mesh.vertex[RingMesh::before(corner)];
+        if (mesh.twin(corner) > corner) continue;  // met from the other face
+        switch (mesh.refusal(a, b, allow_topology)) {
+            case Refusal::locked:
+                ++out.refused_locked;
+                break;
+            case Refusal::topology:
+                ++out.refused_topology;
+                break;
+            default:
+                ++out.refused_folding;
+        }
+    }
+}
+
+/// The mesh that is left, without gaps. `joined` is made to name its vertices.
+RingMesh without_gaps(const RingMesh& mesh, std::vector<std::int32_t>& joined) {
+    std::vector<std::int32_t> renamed(mesh.first.size(), -1), corners, faces;
+    std::vector<Vec3> positions;
+    std::vector<VertexKind> kinds;
+    for (std::size_t v = 0; v < mesh.first.size(); ++v) {
+        if (mesh.first[v] < 0) continue;
+        renamed[v] = static_cast<std::int32_t>(positions.size());
+        positions.push_back(mesh.position[v]);
+        kinds.push_back(mesh.kind[v]);
+    }
+    for (std::size_t f = 0; f < mesh.tags.size(); ++f) {
+        if (mesh.vertex[3 * f] < 0) continue;
+        faces.push_back(static_cast<std::int32_t>(f));
+        for (int k = 0; k < 3; ++k) corners.push_back(renamed[mesh.vertex[3 * f + k]]);
+    }
+    RingMesh out(std::move(positions), std::move(corners));
+    out.kind = std::move(kinds);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        out.tags[f] = mesh.tags[faces[f]];
+        out.origin[f] = mesh.origin[faces[f]];
+    }
+    for (std::int32_t& v : joined) {
+        while (joined[v] != v) v = joined[v];
+    }
+    for (std::int32_t& v : joined) v = renamed[v];
+    return out;
+}
+
+Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& options) {
+    Decimation out;
+    out.degenerate = in.degenerate;
+    out.non_finite = in.non_finite;
+    if (in.faces.empty()) return out;
+    Lap watch;
+    RingMesh mesh = tagged_mesh(in, options);
+    std::vector<std::int32_t> joined = collapse(mesh, in, options);
+    if (mesh.face_count() > options.faces) {
+        out.stop = DecimationStop::validity;
+        count_refusals(mesh, options.allow_topology, out);
+    }
+    RingMesh coarse = without_gaps(mesh, joined);
+    mesh = RingMesh({}, {});
+    watch.add_to(out.seconds_collapse);
+    const bool unchanged = coarse.face_count() == in.faces.size();
+    if (options.method == DecimationMethod::best && !options.fast && !unchanged)
+        bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    watch.add_to(out.seconds_fit);
+
+    for (const Vec3 q : coarse.position) {
+        const Vec3 p = in.centre + in.diagonal * q;
+        out.vertices.insert(out.vertices.end(), {p.x, p.y, p.z});
+    }
+    for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
+    if (options.sources) {
+        out.vertex_source = vertex_sources(in, coarse, {options.run.threads, {}});
+        if (!options.seams.empty()) {
+            RingMesh fine(in.positions, in.corners);
+            tag_seams(fine, in, options.seams);
+            out.corner_source = corner_sources(in, fine, coarse, {options.run.threads, {}});
+        }
+    }
+    out.faces = std::move(coarse.vertex);
+    return out;
+}
+
+/// An upper bound of the two-sided Hausdorff distance over the diagonal; infinite where it is more than `limit`.
+double proven_error(const DecimationInput& in, const ClosestIndex& fine, const Decimation& made, double limit,
+                    const Execution& run) {
+    const std::vector<double> flat = in.flat();
+    std::vector<double> coarse;
+    for (std::size_t i = 0; i < made.vertices.size(); i += 3) {
+        const Vec3 p = 1 / in.diagonal * (load(&made.vertices[i]) - in.centre);
+        coarse.insert(coarse.end(), {p.x, p.y, p.z});
+    }
+    if (made.faces.empty()) return std::numeric_limits<double>::infinity();
+    HausdorffOptions options;
+    options.limit = limit;
+    options.tolerance = limit / 100;
+    options.run.threads = run.threads;
+    const double back = hausdorff_bound(coarse, made.faces, fine, options).upper;
+    if (back > limit) return std::numeric_limits<double>::infinity();
+    const double there =
+        hausdorff_bound(flat, in.corners, ClosestIndex(coarse, made.faces, options.run), options).upper;
+    return there > limit ? std::numeric_limits<double>::infinity() : std::max(back, there);
+}
+
+/// Bisection of the number of faces, by ratios: the distance falls with it, if not strictly, and what is given back was
+/// proven.
+Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options) {
+    const std::vector<double> flat = in.flat();
+    if (in.faces.empty()) return decimate_to_faces(in, options);
+    const ClosestIndex fine(flat, in.corners, {options.run.threads, {}});
+    options.faces = in.faces.size();
+    const Execution run = options.run;
+    options.run.progress = {};
+    Decimation best = decimate_to_faces(in, options);
+    double enough = static_cast<double>(in.faces.size()), too_few = 1;
+    constexpr int trials = 10;
+    for (int trial = 0; trial < trials && enough > 1.02 * too_few + 1; ++trial) {
+        // The first trials look low: most meshes hold far more faces than an error of interest needs.
+        options.faces = static_cast<std::size_t>(std::sqrt(enough * too_few));
+        Decimation made = decimate_to_faces(in, options);
+        const double bound = proven_error(in, fine, made, options.error, run);
+        const bool stuck = made.stop == DecimationStop::validity;
+        if (bound <= options.error) {
+            enough = static_cast<double>(made.faces.size() / 3);
+            best = std::move(made);
+            best.error_bound = bound;
+            if (stuck) break;
+        } else {
+            too_few = static_cast<double>(options.faces);
+        }
+        if (run.progress && !run.progress((trial + 1.0) / (trials + 1))) throw Cancelled();
+    }
+    return best;
+}
+
+}  // namespace
+
+Decimation decimate(Points vertices, Triangles faces, const DecimateOptions& options) {
+    check(vertices, faces, options);
+    const DecimationInput in = decimation_input(vertices, faces, options.run);
+    return options.error > 0 ? decimate_to_error(in, options) : decimate_to_faces(in, options);
+}
+
+}  // namespace gaussmap

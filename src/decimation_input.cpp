@@ -1,0 +1,97 @@
+#include "decimation_input.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "gaussmap/neighbors.h"
+
+namespace gaussmap {
+namespace {
+
+std::vector<std::int32_t> usable_faces(Points vertices, Triangles faces, DecimationInput& in) {
+    std::vector<std::int32_t> usable;
+    for (std::size_t f = 0; f < faces.count; ++f) {
+        const std::int32_t *abc = faces[f], a = abc[0], b = abc[1], c = abc[2];
+        if (a == b || b == c || c == a)
+            ++in.degenerate;
+        else if (!finite(load(vertices[a])) || !finite(load(vertices[b])) || !finite(load(vertices[c])))
+            ++in.non_finite;
+        else
+            usable.push_back(static_cast<std::int32_t>(f));
+    }
+    return usable;
+}
+
+/// Faces by the least of their vertices, which comes first, then by the others, then by their index.
+void sort_faces(Triangles faces, const std::vector<std::int32_t>& rank, DecimationInput& in) {
+    struct Key {
+        std::array<std::int32_t, 3> ranks;
+        std::int32_t face;
+        std::int8_t rotation;
+        bool operator<(const Key& other) const {
+            return ranks != other.ranks ? ranks < other.ranks : face < other.face;
+        }
+    };
+    std::vector<Key> keys;
+    keys.reserve(in.faces.size());
+    for (const std::int32_t f : in.faces) {
+        std::array<std::int32_t, 3> r{rank[faces[f][0]], rank[faces[f][1]], rank[faces[f][2]]};
+        const auto least = std::min_element(r.begin(), r.end());
+        const auto rotation = static_cast<std::int8_t>(least - r.begin());
+        std::rotate(r.begin(), least, r.end());
+        keys.push_back({r, f, rotation});
+    }
+    std::sort(keys.begin(), keys.end());
+    in.corners.reserve(3 * keys.size());
+    in.rotation.reserve(keys.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        in.faces[i] = keys[i].face;
+        in.rotation.push_back(keys[i].rotation);
+        in.corners.insert(in.corners.end(), keys[i].ranks.begin(), keys[i].ranks.end());
+    }
+}
+
+}  // namespace
+
+std::vector<double> DecimationInput::flat() const {
+    std::vector<double> out;
+    out.reserve(3 * positions.size());
+    for (const Vec3 p : positions) out.insert(out.end(), {p.x, p.y, p.z});
+    return out;
+}
+
+DecimationInput decimation_input(Points vertices, Triangles faces, const Execution& run) {
+    DecimationInput in;
+    in.faces = usable_faces(vertices, faces, in);
+    if (in.faces.empty()) return in;
+    std::vector<std::int32_t> rank(vertices.count, -1), used;
+    for (const std::int32_t f : in.faces)
+        for (int k = 0; k < 3; ++k) rank[faces[f][k]] = 0;
+    std::vector<double> points;
+    for (std::size_t v = 0; v < vertices.count; ++v) {
+        if (rank[v] < 0) continue;
+        used.push_back(static_cast<std::int32_t>(v));
+        points.insert(points.end(), vertices[v], vertices[v] + 3);
+    }
+    std::vector<std::int32_t> order = spatial_order(points, {run.threads, {}});
+    Vec3 low = load(points.data()), high = low;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::int32_t v = used[order[i]];
+        const Vec3 p = load(vertices[v]);
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        order[i] = v;
+        rank[v] = static_cast<std::int32_t>(i);
+    }
+    // Halves first: a box as large as doubles reach has a centre, and a diagonal.
+    in.centre = 0.5 * low + 0.5 * high;
+    const Vec3 half = 0.5 * high - 0.5 * low;
+    const double largest = std::max({half.x, half.y, half.z});
+    in.diagonal = largest > 0 ? 2 * largest * length(1 / largest * half) : 1;
+    for (const std::int32_t v : order) in.positions.push_back(1 / in.diagonal * (load(vertices[v]) - in.centre));
+    sort_faces(faces, rank, in);
+    return in;
+}
+
+}  // namespace gaussmap

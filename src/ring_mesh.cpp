@@ -1,0 +1,327 @@
+#include "ring_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace gaussmap {
+namespace {
+
+constexpr double least_cosine = 0.25;  ///< between a face's normals before and after a step
+constexpr double sliver = 2e-3;        ///< 2 area / Σ edge² below which a face is one; 0.289 is equilateral
+
+double sum_of_squares(Vec3 a, Vec3 b, Vec3 c) {
+    return squared(b - a) + squared(c - b) + squared(a - c);
+}
+
+}  // namespace
+
+bool turns_over(Vec3 a, Vec3 b, Vec3 c, Vec3 a2, Vec3 b2, Vec3 c2) {
+    const Vec3 n = cross(b - a, c - a), n2 = cross(b2 - a2, c2 - a2);
+    const double l = sum_of_squares(a, b, c), l2 = sum_of_squares(a2, b2, c2);
+    const double nn = squared(n), nn2 = squared(n2);
+    const bool was_sliver = nn <= sliver * sliver * l * l;
+    // A sliver may become a better one.
+    if (nn2 <= sliver * sliver * l2 * l2 && !(was_sliver && nn2 > 0 && nn2 * l * l > nn * l2 * l2)) return true;
+    const double cosine = dot(n, n2);
+    // The normal of what has no area says nothing.
+    if (nn <= 1e-20 * l * l) return false;
+    return cosine <= 0 || cosine * cosine < least_cosine * least_cosine * nn * nn2;
+}
+
+RingMesh::RingMesh(std::vector<Vec3> positions, std::vector<std::int32_t> corners)
+    : position(std::move(positions)),
+      vertex(std::move(corners)),
+      first(position.size(), -1),
+      kind(position.size(), VertexKind::free),
+      origin(vertex.size() / 3),
+      tags(vertex.size() / 3, 0),
+      next_(vertex.size()),
+      mark_(position.size(), 0),
+      faces_(vertex.size() / 3) {
+    std::iota(origin.begin(), origin.end(), 0);
+    // From the last, so that rings run through the faces in their order.
+    for (std::size_t c = vertex.size(); c-- > 0;) link(static_cast<std::int32_t>(c), vertex[c]);
+}
+
+std::uint32_t RingMesh::new_marks(std::uint32_t count) {
+    if (marks_ > 0xffffffffu - 2 * count) {
+        std::fill(mark_.begin(), mark_.end(), 0u);
+        marks_ = 0;
+    }
+    const std::uint32_t mark = marks_ + 1;
+    marks_ += count;
+    return mark;
+}
+
+void RingMesh::link(std::int32_t corner, std::int32_t v) {
+    if (first[v] < 0) {
+        first[v] = next_[corner] = corner;
+        return;
+    }
+    next_[corner] = next_[first[v]];
+    next_[first[v]] = corner;
+}
+
+void RingMesh::unlink(std::int32_t corner) {
+    const std::int32_t v = vertex[corner];
+    if (next_[corner] == corner) {
+        first[v] = -1;
+        return;
+    }
+    std::int32_t previous = next_[corner];
+    while (next_[previous] != corner) previous = next_[previous];
+    next_[previous] = next_[corner];
+    if (first[v] == corner) first[v] = previous;
+}
+
+void RingMesh::gather(std::int32_t v) {
+    sectors_.clear();
+    for_corners(v, [&](std::int32_t c) { sectors_.push_back({c, vertex[after(c)], vertex[before(c)]}); });
+}
+
+void RingMesh::tag_irregular_sides() {
+    for (std::size_t v = 0; v < first.size(); ++v) {
+        gather(static_cast<std::int32_t>(v));
+        for (const Sector& here : sectors_) {
+            for (const std::int32_t w : {here.from, here.to}) {
+                // The side from v to w belongs to faces (v, w, ·), where it runs out, and (·, w, v), where it runs in.
+                int out = 0, in = 0;
+                for (const Sector& other : sectors_) out += other.from == w, in += other.to == w;
+                if (out == 1 && in == 1) continue;
+                tag(w == here.from ? before(here.corner) : after(here.corner));
+            }
+        }
+    }
+}
+
+void RingMesh::tag_features(double cosine) {
+    for (std::size_t c = 0; c < vertex.size(); ++c) {
+        const auto corner = static_cast<std::int32_t>(c);
+        const std::int32_t other = twin(corner);
+        if (other < corner) continue;
+        const auto normal = [&](std::int32_t k) {
+            const Vec3 p = position[vertex[k]];
+            return cross(position[vertex[after(k)]] - p, position[vertex[before(k)]] - p);
+        };
+        const Vec3 n = normal(corner), m = normal(other);
+        if (dot(n, m) < cosine * length(n) * length(m)) tag(corner), tag(other);
+    }
+}
+
+bool RingMesh::all_in_one_fan() const {
+    // Every side is regular: each sector has one before it and one after it.
+    std::size_t walked = 0;
+    std::int32_t at = sectors_.front().from;
+    do {
+        const auto sector =
+            std::find_if(sectors_.begin(), sectors_.end(), [&](const Sector& s) { return s.from == at; });
+        at = sector->to;
+        ++walked;
+    } while (at != sectors_.front().from);
+    return walked == sectors_.size();
+}
+
+std::size_t RingMesh::parts() const {
+    std::vector<std::size_t> part(sectors_.size());
+    for (std::size_t i = 0; i < part.size(); ++i) part[i] = i;
+    const auto root = [&](std::size_t i) {
+        while (part[i] != i) i = part[i];
+        return i;
+    };
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        if (tagged(after(sectors_[i].corner))) continue;
+        for (std::size_t j = 0; j < part.size(); ++j)
+            if (sectors_[j].from == sectors_[i].to) part[root(j)] = root(i);
+    }
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < part.size(); ++i) count += part[i] == i;
+    return count;
+}
+
+VertexKind RingMesh::kind_of(std::int32_t v) {
+    gather(v);
+    std::size_t tagged_sides = 0, ends = 0;
+    const std::uint32_t mark = new_marks(1);
+    for (const Sector& s : sectors_)
+        for (const auto& [opposite, end] : {std::pair{before(s.corner), s.from}, std::pair{after(s.corner), s.to}}) {
+            if (!tagged(opposite)) continue;
+            ++ends;
+            if (mark_[end] != mark) mark_[end] = mark, ++tagged_sides;
+        }
+    if (tagged_sides == 0) return sectors_.empty() || all_in_one_fan() ? VertexKind::free : VertexKind::corner;
+    // Each part between tagged sides has two ends; a part more is a fan that touches the others in v alone.
+    return tagged_sides == 2 && 2 * parts() == ends ? VertexKind::curve : VertexKind::corner;
+}
+
+void RingMesh::find_kinds() {
+    for (std::size_t v = 0; v < first.size(); ++v) kind[v] = kind_of(static_cast<std::int32_t>(v));
+}
+
+Refusal RingMesh::refusal(std::int32_t a, std::int32_t b, bool allow_topology) {
+    const VertexKind ka = kind[a], kb = kind[b];
+    if (ka == VertexKind::corner && kb == VertexKind::corner) return Refusal::locked;
+    const std::uint32_t mark = new_marks(3);  // + 0: joined to a, + 1: to both, + 2: by a face on both
+    for_corners(a, [&](std::int32_t c) { mark_[vertex[after(c)]] = mark_[vertex[before(c)]] = mark; });
+    std::size_t common = 0, opposite = 0;
+    bool along = false, last = false;
+    for_corners(b, [&](std::int32_t c) {
+        for (const std::int32_t k : {after(c), before(c)})
+            if (vertex[k] != a && mark_[vertex[k]] == mark) mark_[vertex[k]] = mark + 1, ++common;
+    });
+    for_corners(b, [&](std::int32_t c) {
+        const std::int32_t n = after(c), p = before(c);
+        if (vertex[n] != a && vertex[p] != a) return;
+        const std::int32_t of_a = vertex[n] == a ? n : p, third = of_a == n ? p : n;
+        along |= tagged(third);
+        // The third vertex keeps a face, and two borders never become one.
+        last |= next(third) == third || (tagged(of_a) && tagged(c));
+        if (mark_[vertex[third]] == mark + 1) mark_[vertex[third]] = mark + 2, ++opposite;
+    });
+    if (ka != VertexKind::free && kb != VertexKind::free && !along) return Refusal::locked;
+    if (last) return Refusal::topology;
+    bool fits = true;
+    if (common != opposite) {
+        if (!allow_topology) return Refusal::topology;
+        // A hole or a slit may close: there, both sides to the common neighbour are borders.
+        const auto faces_with = [&](std::int32_t v, std::int32_t w) {
+            int n = 0;
+            for_corners(v, [&](std::int32_t c) { n += vertex[after(c)] == w || vertex[before(c)] == w; });
+            return n;
+        };
+        for_corners(b, [&](std::int32_t c) {
+            for (const std::int32_t w : {vertex[after(c)], vertex[before(c)]})
+                if (w != a && mark_[w] == mark + 1 && (faces_with(a, w) != 1 || faces_with(b, w) != 1)) fits = false;
+        });
+    }
+    // No face may fall upon another, as those of a tetrahedron would.
+    for_corners(b, [&](std::int32_t c) {
+        const std::int32_t u = vertex[after(c)], w = vertex[before(c)];
+        if (u == a || w == a || mark_[u] <= mark || mark_[w] <= mark || mark_[u] > mark + 2 || mark_[w] > mark + 2)
+            return;
+        for_corners(a, [&](std::int32_t d) {
+            const std::int32_t s = vertex[after(d)], t = vertex[before(d)];
+            if ((s == u && t == w) || (s == w && t == u)) fits = false;
+        });
+    });
+    return fits ? Refusal::none : Refusal::topology;
+}
+
+bool RingMesh::turns(std::int32_t v, std::int32_t but_of, Vec3 p) const {
+    const std::int32_t start = first[v];
+    std::int32_t c = start;
+    if (start < 0) return false;
+    do {
+        const std::int32_t s = vertex[after(c)], t = vertex[before(c)];
+        if (s != but_of && t != but_of &&
+            turns_over(position[v], position[s], position[t], p, position[s], position[t]))
+            return true;
+        c = next_[c];
+    } while (c != start);
+    return false;
+}
+
+bool RingMesh::folds(std::int32_t a, std::int32_t b, Vec3 p) const {
+    return turns(a, b, p) || turns(b, a, p);
+}
+
+void RingMesh::collapse(std::int32_t a, std::int32_t b, Vec3 p) {
+    const bool tags_matter = kind[a] != VertexKind::free || kind[b] != VertexKind::free;
+    std::int32_t widened[8];  // third vertices of faces that go with a tagged side
+    std::size_t widen = 0;
+    std::int32_t head = -1, tail = -1;
+    for (const std::int32_t from : {a, b}) {
+        const std::int32_t start = first[from];
+        std::int32_t c = start;
+        do {
+            const std::int32_t then = next_[c], n = after(c), q = before(c);
+            const std::int32_t other = from == a ? b : a;
+            // Faces on both are met first from a, and have gone when b's corners come.
+            if (vertex[n] == other || vertex[q] == other) {
+                const std::int32_t third = vertex[n] == other ? q : n;
+                if (tags_matter && (tagged(c) || tagged(vertex[n] == other ? n : q)) && widen < 8)
+                    widened[widen++] = vertex[third];
+                unlink(third);
+                vertex[c] = vertex[third] = -1;  // the corner at b is told by its −1 neighbours
+                --faces_;
+            } else if (vertex[c] >= 0 && vertex[n] >= 0 && vertex[q] >= 0) {
+                vertex[c] = a;
+                if (head < 0)
+                    head = c;
+                else
+                    next_[tail] = c;
+                tail = c;
+            } else {
+                vertex[c] = -1;
+            }
+            c = then;
+        } while (c != start);
+    }
+    if (tail >= 0) next_[tail] = head;
+    first[a] = head;
+    first[b] = -1;
+    position[a] = p;
+    kind[a] = std::max(kind[a], kind[b]);
+    for (std::size_t i = 0; i < widen; ++i)
+        for_corners(a, [&](std::int32_t c) {
+            if (vertex[after(c)] == widened[i]) tag(before(c));
+            if (vertex[before(c)] == widened[i]) tag(after(c));
+        });
+}
+
+std::int32_t RingMesh::twin(std::int32_t corner) const {
+    const std::int32_t from = vertex[after(corner)], to = vertex[before(corner)];
+    std::int32_t found = -1;
+    int faces = 0;
+    for_corners(from, [&](std::int32_t c) {
+        const std::int32_t n = after(c), q = before(c);
+        faces += vertex[n] == to || vertex[q] == to;
+        if (vertex[q] == to) found = n;
+    });
+    return faces == 2 ? found : -1;
+}
+
+void RingMesh::flip(std::int32_t corner, std::int32_t other) {
+    // Faces (a, b, c) with a at the corner and (d, c, b) with d at its twin become (a, b, d) and (d, c, a).
+    const std::int32_t a = vertex[corner], d = vertex[other];
+    const std::int32_t at_c = before(corner), at_b = before(other);
+    const std::int32_t fa = corner / 3, fd = other / 3;
+    const auto bit = [](std::int32_t c) { return static_cast<std::uint8_t>(1 << c % 3); };
+    const bool side_ca = tagged(after(corner)), side_bd = tagged(after(other));
+    unlink(at_c);
+    unlink(at_b);
+    vertex[at_c] = d;
+    vertex[at_b] = a;
+    link(at_c, d);
+    link(at_b, a);
+    // The sides that changed faces take their tags along: side b–d lies opposite a's corner, c–a opposite d's.
+    tags[fa] = static_cast<std::uint8_t>((tags[fa] & bit(at_c)) | (side_bd ? bit(corner) : 0));
+    tags[fd] = static_cast<std::uint8_t>((tags[fd] & bit(at_b)) | (side_ca ? bit(other) : 0));
+}
+
+void RingMesh::split(std::int32_t corner, std::int32_t other, Vec3 p, std::int32_t m, std::int32_t face,
+                     std::int32_t twin_face) {
+    position[m] = p;
+    kind[m] = VertexKind::free;
+    const std::pair<std::int32_t, std::int32_t> halves[] = {{corner, face}, {other, twin_face}};
+    for (const auto& [at, added] : halves) {
+        // (a, b, c) with a at the corner becomes (a, b, m), and (a, m, c) is added; side c–a moves with its tag.
+        const std::int32_t to_c = before(at), to_b = after(at);
+        const std::int32_t a = vertex[at], c = vertex[to_c];
+        const bool side_ca = tagged(to_b);
+        unlink(to_c);
+        tags[at / 3] &= static_cast<std::uint8_t>(~(1 << to_b % 3));
+        tags[added] = side_ca ? 2 : 0;
+        origin[added] = origin[at / 3];
+        const std::int32_t corners[] = {a, m, c};
+        for (int k = 0; k < 3; ++k) {
+            vertex[3 * added + k] = corners[k];
+            link(3 * added + k, corners[k]);
+        }
+        vertex[to_c] = m;
+        link(to_c, m);
+    }
+    faces_ += 2;
+}
+
+}  // namespace gaussmap

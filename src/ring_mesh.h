@@ -1,0 +1,117 @@
+// A triangle mesh that changes: collapses, flips and splits, on any connectivity.
+//
+// The corners of a vertex are a circular list through one array, so that two rings join by exchanging links and nothing
+// is ever allocated. A side is known by the corner opposite to it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "gaussmap/types.h"
+#include "vec.h"
+
+namespace gaussmap {
+
+/// How freely a vertex moves. Tagged sides are borders, seams, features, and sides that are not manifold.
+enum class VertexKind : std::uint8_t {
+    free,   ///< on no tagged side
+    curve,  ///< where two tagged sides meet: it moves along them
+    corner  ///< anything else: it stays
+};
+
+enum class Refusal : std::uint8_t { none, locked, topology, folding };
+
+class RingMesh {
+  public:
+    /// Faces are usable: indices within the vertices, no corner repeated.
+    RingMesh(std::vector<Vec3> positions, std::vector<std::int32_t> corners);
+
+    std::vector<Vec3> position;
+    std::vector<std::int32_t> vertex;  ///< of corner 3f + k of face f; −1 where the face has gone
+    std::vector<std::int32_t> first;   ///< a corner of each vertex; −1: none
+    std::vector<VertexKind> kind;
+    std::vector<std::int32_t> origin;  ///< of each face: the first face that it descends from
+    std::vector<std::uint8_t> tags;    ///< a face: bit k: the side opposite corner k is tagged
+
+    std::size_t face_count() const { return faces_; }
+    bool tagged(std::int32_t corner) const { return tags[static_cast<std::size_t>(corner) / 3] >> (corner % 3) & 1; }
+    void tag(std::int32_t corner) {
+        tags[static_cast<std::size_t>(corner) / 3] |= static_cast<std::uint8_t>(1 << corner % 3);
+    }
+    static std::int32_t after(std::int32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+    static std::int32_t before(std::int32_t corner) { return corner % 3 == 0 ? corner + 2 : corner - 1; }
+    std::int32_t next(std::int32_t corner) const { return next_[static_cast<std::size_t>(corner)]; }
+
+    /// Call body(corner) for the corners of a vertex; the mesh must not change meanwhile.
+    template <class Body>
+    void for_corners(std::int32_t v, Body&& body) const {
+        const std::int32_t start = first[static_cast<std::size_t>(v)];
+        if (start < 0) return;
+        std::int32_t c = start;
+        do {
+            body(c);
+            c = next_[static_cast<std::size_t>(c)];
+        } while (c != start);
+    }
+    /// Call body(w) for the vertices joined to v, each once.
+    template <class Body>
+    void for_neighbors(std::int32_t v, Body&& body) {
+        const std::uint32_t mark = new_marks(1);
+        for_corners(v, [&](std::int32_t c) {
+            for (const std::int32_t other : {vertex[after(c)], vertex[before(c)]})
+                if (mark_[other] != mark) mark_[other] = mark, body(other);
+        });
+    }
+
+    /// Tag sides of one face, of three and more, and of two that run the same way. Time O(sum of degrees²).
+    void tag_irregular_sides();
+    /// Tag sides whose faces' normals differ by more than this.
+    void tag_features(double cosine);
+    /// The kinds, from the tags and from how many fans a vertex has.
+    void find_kinds();
+
+    /// Why a and b may not become one vertex, wherever it is put.
+    /// Link condition: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999.
+    Refusal refusal(std::int32_t a, std::int32_t b, bool allow_topology);
+    /// Would a face turn over, or become a sliver, with a and b both at p?
+    bool folds(std::int32_t a, std::int32_t b, Vec3 p) const;
+    /// Would a face of v turn over, or become a sliver, with v at p?
+    bool folds(std::int32_t v, Vec3 p) const { return turns(v, -1, p); }
+    /// b joins a at p; the faces on both go.
+    void collapse(std::int32_t a, std::int32_t b, Vec3 p);
+
+    /// The only other corner opposite to the same side, −1 unless there is exactly one and it runs the other way.
+    std::int32_t twin(std::int32_t corner) const;
+    /// The side opposite to the corner is replaced by the other diagonal of its two faces.
+    void flip(std::int32_t corner, std::int32_t twin);
+    /// A vertex at p on the side opposite to the corner, which is in two faces; the two that are added take the places
+    /// of faces that have gone, the vertex that of one that has.
+    void split(std::int32_t corner, std::int32_t twin, Vec3 p, std::int32_t new_vertex, std::int32_t face,
+               std::int32_t twin_face);
+
+  private:
+    std::uint32_t new_marks(std::uint32_t count);
+    bool turns(std::int32_t v, std::int32_t but_of, Vec3 p) const;
+    void unlink(std::int32_t corner);
+    void link(std::int32_t corner, std::int32_t v);
+    /// The corner of a face at a vertex, and the ends of the two sides there.
+    struct Sector {
+        std::int32_t corner, from, to;
+    };
+    void gather(std::int32_t v);
+    bool all_in_one_fan() const;
+    std::size_t parts() const;
+    VertexKind kind_of(std::int32_t v);
+
+    std::vector<std::int32_t> next_;
+    std::vector<std::uint32_t> mark_;
+    std::vector<Sector> sectors_;  ///< of the vertex last gathered
+    std::uint32_t marks_ = 0;
+    std::size_t faces_ = 0;
+};
+
+/// Whether a triangle that was (a, b, c) and becomes (a2, b2, c2) turns by more than some 75°, or becomes a sliver.
+bool turns_over(Vec3 a, Vec3 b, Vec3 c, Vec3 a2, Vec3 b2, Vec3 c2);
+
+}  // namespace gaussmap
