@@ -54,13 +54,11 @@ class LocalFit {
         ++count_;
     }
 
-    /// Of a quadric if asked for; of a plane where the data do not determine one well, else the mean.
-    std::array<double, values> at_origin(bool quadric) const {
-        std::array<double, values> result;
-        if (quadric && count_ >= 9 && solve<6>(result)) return result;
-        if (count_ >= 5 && solve<3>(result)) return result;
-        solve<1>(result);
-        return result;
+    /// False where the data do not determine a quadric well.
+    bool quadric(std::array<double, values>& at_origin) const { return count_ >= 9 && solve<6>(at_origin); }
+    /// The mean where the data do not determine a plane well.
+    void plane(std::array<double, values>& at_origin) const {
+        if (count_ < 5 || !solve<3>(at_origin)) solve<1>(at_origin);
     }
 
   private:
@@ -98,9 +96,11 @@ class LocalFit {
 /// Errors are worlds apart where one squared is this many times the other.
 constexpr float apart = 9;
 
+enum class Order { quadric, quadric_or_plane, plane };
+
 /// What is known about the element `from`, interpolated among it and its neighbours at a foot nearby, put in
 /// place i.
-void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, bool quadric, Measured& result,
+void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, Order order, Measured& result,
                  std::size_t i) {
     const Vec3 normal = known.normal[from];
     const Frame frame = frame_about(normal);
@@ -125,7 +125,10 @@ void interpolate(const Level& level, const Measured& known, std::size_t from, Ve
     take(from);
     for (std::size_t j = 0; j < ElementGraph::degree && level.graph[from][j] >= 0; ++j)
         take(static_cast<std::size_t>(level.graph[from][j]));
-    const auto value = fit.at_origin(quadric);
+    std::array<double, LocalFit::values> value;
+    const bool curved = order != Order::plane && fit.quadric(value);
+    if (!curved && order == Order::quadric) return;
+    if (!curved) fit.plane(value);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
     result.density[i] = std::max(0.0, value[0]);
     result.risk[i] = known.risk[from];
@@ -188,7 +191,11 @@ void refine(const Level& above, const Measured& coarse, const Level& level, Meas
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
             const auto parent = static_cast<std::size_t>(level.parent[i]);
-            if (coarse.risk[parent] < fine.risk[i]) interpolate(above, coarse, parent, level.foot_of(i), true, fine, i);
+            if (!(coarse.risk[parent] < fine.risk[i])) continue;
+            // At the edge of a region that went on climbing too little is around for good interpolation.
+            const bool better = apart * coarse.risk[parent] < fine.risk[i];
+            interpolate(above, coarse, parent, level.foot_of(i), better ? Order::quadric_or_plane : Order::quadric,
+                        fine, i);
         }
     });
 }
@@ -203,7 +210,7 @@ void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured
                 if (lends[other] && known.risk[other] < known.risk[best]) best = other;
             }
             if (apart * known.risk[best] < known.risk[i])
-                interpolate(level, known, best, level.foot_of(i), false, measured, i);
+                interpolate(level, known, best, level.foot_of(i), Order::plane, measured, i);
         }
     });
 }
