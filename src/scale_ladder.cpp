@@ -29,9 +29,9 @@ constexpr float never = std::numeric_limits<float>::infinity();
 constexpr int most_samples = 96;  ///< of an average
 constexpr std::size_t grain = 256;
 
-constexpr int rungs_of_level = 3;  ///< the lowest level has as many more
+constexpr int rungs_of_level = 3;  ///< the lowest level has four more, as what is handed down is a little worse
 constexpr int level_of(int rung) {
-    return std::max(0, rung / rungs_of_level - 1);
+    return std::max(0, (rung - 1) / rungs_of_level - 1);
 }
 
 /// What is known of each family, for discs filled evenly.
