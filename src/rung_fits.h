@@ -1,0 +1,91 @@
+// What one rung of the ladder of scales finds: fits over windows about the feet of elements, and averages of them.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "fitted_curvature.h"
+#include "gaussmap/neighbors.h"
+#include "height_fit.h"
+#include "pyramid.h"
+#include "scale_ladder.h"
+
+namespace gaussmap {
+
+using Field = std::vector<float>;
+
+/// What a rung found, an element each; NaN where it was not on the rung. Two of a kind: of the quadric and of the
+/// quartic. Variances are for heights of unit variance on the lowest level.
+struct Rung {
+    Field size, half_size;                 ///< distances of the last neighbour and of the one half way
+    std::array<Field, 2> variance, trace;  ///< of the density and of the shape operator
+    std::array<Field, 2> residual;         ///< variance of the heights about the fit, on the lowest level
+    std::array<Field, families> density;   ///< |S|², its bias by noise included
+    std::array<Field, 2> spread;           ///< variance of the slopes, half and whole, relative to that of an even disc
+    std::array<std::vector<Symmetric3>, families> tensor;
+    std::vector<Vec3> normal;
+
+    explicit Rung(std::size_t count = 0)
+        : size(count, std::numeric_limits<float>::quiet_NaN()), half_size(size), normal(count, Vec3{NAN, NAN, NAN}) {
+        for (int q = 0; q < 2; ++q) variance[q] = trace[q] = residual[q] = spread[q] = size;
+        for (int f = 0; f < families; ++f) density[f] = size, tensor[f].resize(count);
+    }
+};
+
+template <class T>
+std::vector<T> at(const std::vector<T>& field, const std::vector<std::int32_t>& index) {
+    std::vector<T> picked(index.size());
+    for (std::size_t i = 0; i < index.size(); ++i) picked[i] = field[static_cast<std::size_t>(index[i])];
+    return picked;
+}
+
+/// A rung's finds at the elements that represent those of the next level.
+inline Rung at(const Rung& rung, const std::vector<std::int32_t>& index) {
+    Rung picked;
+    picked.size = at(rung.size, index), picked.half_size = at(rung.half_size, index);
+    picked.normal = at(rung.normal, index);
+    for (int q = 0; q < 2; ++q) {
+        picked.variance[q] = at(rung.variance[q], index), picked.trace[q] = at(rung.trace[q], index);
+        picked.residual[q] = at(rung.residual[q], index), picked.spread[q] = at(rung.spread[q], index);
+    }
+    for (int f = 0; f < families; ++f)
+        picked.density[f] = at(rung.density[f], index), picked.tensor[f] = at(rung.tensor[f], index);
+    return picked;
+}
+
+/// The fits of a level's elements, rung after rung; each moves the feet of the elements to the surface that it finds.
+class RungFits {
+  public:
+    RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const Execution& run)
+        : elements_(elements),
+          level_(level),
+          active_(active),
+          run_{run.threads, {}},
+          index_(Points(level.position), run_),
+          samples_(level.count() * most_samples, -1) {}
+
+    /// The finds of a rung, fitted and averaged, at the active elements.
+    Rung step(int rung);
+
+  private:
+    void fit(int rung, std::size_t first, std::size_t last, Rung& found);
+    void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, Moments<2>& quadric,
+                     Moments<4>& quartic, Rung& found);
+    void average(Rung& found);
+    void average_element(std::size_t i, Rung& found);
+
+    static constexpr int most_samples = 96;  ///< of an average
+
+    const Elements& elements_;
+    Level& level_;
+    const std::vector<std::uint8_t>& active_;
+    Execution run_;
+    NeighborIndex index_;
+    std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 beyond
+};
+
+}  // namespace gaussmap
