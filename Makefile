@@ -12,6 +12,8 @@
 
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
+# Programs that run side by side would spin for each other's cores.
+export OMP_WAIT_POLICY := passive
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
 THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling test_decimate
