@@ -35,7 +35,7 @@ struct SurfacePoints {
 /// poisson eliminates from five times as many candidates (see poisson_subset).
 /// \throw std::invalid_argument on an index outside [0, vertices.count), a vertex of a face that is not finite (both
 /// named), a surface without area, a count of 0 or over 2²⁷.
-/// Time O(count log count + faces): about 20 µs a point for poisson, 0.2 µs for random.
+/// Time O(count log count + faces): about 20 µs a point for poisson, 0.3 µs for random.
 SurfacePoints sample_surface(Points vertices, Triangles faces, std::size_t count, const SamplingOptions& options = {});
 
 /// Values of the vertices at the points, interpolated linearly; `components` values a vertex and a point.
