@@ -1,46 +1,12 @@
-// Doubles in the widest registers of an instruction set, and distances of boxes. Part of the kernels that include it,
-// one for each instruction set; without external linkage, or the linker could pick a copy that the machine cannot run.
+// Distances of boxes, for one instruction set; part of the kernels that include it (registers.h).
 #pragma once
-
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
 
 #include <cstddef>
 
+#include "registers.h"
+
 namespace gaussmap {
 namespace {
-
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
-
-#ifdef __AVX2__
-constexpr int lanes = 4;
-#else
-constexpr int lanes = 2;
-#endif
-typedef double Real __attribute__((vector_size(8 * lanes)));
-typedef double RealInMemory __attribute__((vector_size(8 * lanes), aligned(8), may_alias));
-typedef long long Mask __attribute__((vector_size(8 * lanes)));
-
-GAUSSMAP_INLINE Real load(const double* p) {
-    return *reinterpret_cast<const RealInMemory*>(p);
-}
-GAUSSMAP_INLINE void store(double* p, Real a) {
-    *reinterpret_cast<RealInMemory*>(p) = a;
-}
-GAUSSMAP_INLINE Real all(double a) {
-    return Real{} + a;
-}
-
-GAUSSMAP_INLINE Real maximum(Real a, Real b) {
-#if defined __AVX2__
-    return (Real)_mm256_max_pd((__m256d)a, (__m256d)b);
-#elif defined __SSE2__
-    return (Real)_mm_max_pd((__m128d)a, (__m128d)b);
-#else
-    return a > b ? a : b;
-#endif
-}
 
 /// A bit a lane.
 GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
@@ -69,8 +35,6 @@ GAUSSMAP_INLINE Real gap(const Box& box, const double* const (&low)[3], const do
     }
     return sum;
 }
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap

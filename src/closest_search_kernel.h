@@ -14,17 +14,6 @@
 namespace gaussmap {
 namespace {
 
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
-
-GAUSSMAP_INLINE Real minimum(Real a, Real b) {
-#if defined __AVX2__
-    return (Real)_mm256_min_pd((__m256d)a, (__m256d)b);
-#elif defined __SSE2__
-    return (Real)_mm_min_pd((__m128d)a, (__m128d)b);
-#else
-    return a < b ? a : b;
-#endif
-}
 GAUSSMAP_INLINE Real clamped(Real a, Real most) {
     return maximum(minimum(a, most), Real{});
 }
@@ -237,8 +226,6 @@ void closest(const ClosestRoom& room, const std::int32_t* order, std::size_t cou
         leaf = closest_of_group(room, order + i, size, leaf, squared_distance, slot);
     }
 }
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap

@@ -9,14 +9,10 @@
 #include <cstddef>
 #include <limits>
 
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
+#include "registers.h"
 
 namespace gaussmap {
 namespace {
-
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -200,8 +196,6 @@ inline double* sort_keys(double* key, double* spare, std::size_t count) {
     }
     return key;
 }
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap

@@ -3,51 +3,11 @@
 // machine cannot run.
 #pragma once
 
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
-
 #include "lane_fits.h"
+#include "registers.h"
 
 namespace gaussmap {
 namespace {
-
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
-
-// Lanes that go through together.
-#ifdef __AVX2__
-constexpr int together = 4;
-#else
-constexpr int together = 2;
-#endif
-typedef double Real __attribute__((vector_size(8 * together)));
-typedef long long Mask __attribute__((vector_size(8 * together)));
-
-GAUSSMAP_INLINE Real load(const double* p) {
-    return *reinterpret_cast<const Real*>(p);
-}
-GAUSSMAP_INLINE void store(double* p, Real a) {
-    *reinterpret_cast<Real*>(p) = a;
-}
-GAUSSMAP_INLINE Real all(double a) {
-    return Real{} + a;
-}
-GAUSSMAP_INLINE Real select(Mask mask, Real yes, Real no) {
-    return (Real)((mask & (Mask)yes) | (~mask & (Mask)no));
-}
-
-// Compilers do not make one instruction of a loop of square roots over lanes.
-GAUSSMAP_INLINE Real square_root(Real a) {
-#if defined __AVX2__
-    return (Real)_mm256_sqrt_pd((__m256d)a);
-#elif defined __SSE2__
-    return (Real)_mm_sqrt_pd((__m128d)a);
-#else
-    Real root;
-    for (int l = 0; l < together; ++l) root[l] = __builtin_sqrt(a[l]);
-    return root;
-#endif
-}
 
 /// A neighbour in its chart.
 struct Datum {
@@ -76,7 +36,7 @@ GAUSSMAP_INLINE Datum datum(const LanePatches& patches, const LaneRange& range, 
         datum.weight = r2 * r2 * r;
     }
     Mask there = {};
-    for (int l = 0; l < together; ++l) there[l] = -(long long)(j >= range.first[lane + l] && j < range.last[lane + l]);
+    for (int l = 0; l < lanes; ++l) there[l] = -(long long)(j >= range.first[lane + l] && j < range.last[lane + l]);
     datum.weight = select(there, datum.weight, Real{});
     return datum;
 }
@@ -117,7 +77,7 @@ void collect(const LanePatches& patches, const LaneRange& range, bool fresh, Lan
         first = range.first[l] < first ? range.first[l] : first;
         last = range.last[l] > last ? range.last[l] : last;
     }
-    for (int lane = 0; lane < fit_lanes; lane += together) {
+    for (int lane = 0; lane < fit_lanes; lane += lanes) {
         Sums<Degree> sums = {};
         if (!fresh) {
             for (int s = 0; s < sums.powers; ++s) sums.power[s] = load(&to.at[to.power + s][lane]);
@@ -233,12 +193,12 @@ void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fi
     if (!Constant) store(&fields.c[0][lane], Real{});
     for (int m = skip; m < monomials(2); ++m) store(&fields.c[m][lane], x[m - skip]);
     if (covariance) store_covariance(factors, lane, fields);
-    for (int l = 0; l < together; ++l) fields.determined[lane + l] = factors.determined[l] != 0;
+    for (int l = 0; l < lanes; ++l) fields.determined[lane + l] = factors.determined[l] != 0;
 }
 
 template <int Degree>
 void solve(const LaneSums& sums, bool constant, bool covariance, LaneFields& fields) {
-    for (int lane = 0; lane < fit_lanes; lane += together) {
+    for (int lane = 0; lane < fit_lanes; lane += lanes) {
         if (constant)
             solve_lanes<Degree, true>(sums, covariance, lane, fields);
         else
@@ -247,8 +207,6 @@ void solve(const LaneSums& sums, bool constant, bool covariance, LaneFields& fie
 }
 
 constexpr LaneFitKernel kernel = {{collect_as_told<2>, solve<2>}, {collect_as_told<4>, solve<4>}};
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap

@@ -16,8 +16,6 @@
 namespace gaussmap {
 namespace {
 
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
-
 constexpr double most = std::numeric_limits<double>::max();
 
 #ifdef __AVX2__
@@ -289,8 +287,6 @@ void nearest(SearchRoom& room, const QueryGroup& group) {
     }
     room.typical = typical;
 }
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap
