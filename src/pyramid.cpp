@@ -4,17 +4,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "frame.h"
 #include "gaussmap/neighbors.h"
 #include "parallel.h"
+#include "unit_cholesky.h"
 
 namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1024;
-/// Cosine of normals that look too far apart to be of one sheet.
-constexpr double one_sheet = 0.3;
 
 void build_graph(Level& level, const NeighborIndex& feet, const Execution& run) {
     constexpr std::size_t degree = ElementGraph::degree;
@@ -67,15 +67,7 @@ class LocalFit {
         constexpr double rank_tolerance = 0.02;
         constexpr int first = most - Terms, last = Terms - 1;
         double a[Terms][Terms], scale[Terms];
-        for (int i = 0; i < Terms; ++i) {
-            scale[i] = 1 / std::sqrt(a_[first + i][first + i]);
-            for (int j = 0; j <= i; ++j) {
-                double value = i == j ? 1 : a_[first + i][first + j] * scale[i] * scale[j];
-                for (int k = 0; k < j; ++k) value -= a[i][k] * a[j][k];
-                if (i == j && !(value > rank_tolerance)) return false;
-                a[i][j] = i == j ? std::sqrt(value) : value / a[j][j];
-            }
-        }
+        if (!unit_cholesky(a_, rank_tolerance, a, scale)) return false;
         for (int s = 0; s < values; ++s) {
             double y[Terms];
             for (int i = 0; i < Terms; ++i) {
@@ -137,6 +129,37 @@ void interpolate(const Level& level, const Measured& known, std::size_t from, Ve
     result.choice[i] = known.choice[from];
 }
 
+/// The member whose foot is nearest to the mean of all feet.
+std::size_t middle_member(const Level& level, std::span<const std::int32_t> members) {
+    Vec3 middle;
+    for (const std::int32_t member : members) middle = middle + level.foot_of(static_cast<std::size_t>(member));
+    middle = 1.0 / static_cast<double>(members.size()) * middle;
+    const auto away = [&](std::int32_t member) {
+        return squared(level.foot_of(static_cast<std::size_t>(member)) - middle);
+    };
+    return static_cast<std::size_t>(*std::min_element(
+        members.begin(), members.end(), [&](std::int32_t a, std::int32_t b) { return away(a) < away(b); }));
+}
+
+/// Mean height over their feet of the members that are near one and of its sheet, along its normal; 0 where none is
+/// known.
+double mean_height(const Level& level, std::span<const std::int32_t> members, std::size_t chosen) {
+    const double near = 4 * reach(level, chosen);
+    double height = 0;
+    int counted = 0;
+    for (const std::int32_t member : members) {
+        const auto other = static_cast<std::size_t>(member);
+        const double along = dot(level.normal[other], level.normal[chosen]);
+        if (squared(level.foot_of(other) - level.foot_of(chosen)) > near) continue;
+        if (other != chosen && !(std::abs(along) >= one_sheet)) continue;
+        const double over = dot(level.at(other) - level.foot_of(other), level.normal[other]);
+        if (!std::isfinite(over)) continue;
+        height += along < 0 ? -over : over;
+        ++counted;
+    }
+    return counted > 0 ? height / counted : 0;
+}
+
 }  // namespace
 
 Level coarsened(Level& level, const Execution& run) {
@@ -151,32 +174,12 @@ Level coarsened(Level& level, const Execution& run) {
     for_blocks(groups, grain, {run.threads, {}}, [&](std::size_t, std::size_t g, std::size_t last) {
         for (; g < last; ++g) {
             const std::size_t begin = g * Level::group, end = std::min(count, begin + Level::group);
-            Vec3 middle;
-            for (std::size_t j = begin; j < end; ++j)
-                middle = middle + level.foot_of(static_cast<std::size_t>(order[j]));
-            middle = 1.0 / static_cast<double>(end - begin) * middle;
-            std::size_t chosen = static_cast<std::size_t>(order[begin]);
-            for (std::size_t j = begin + 1; j < end; ++j) {
-                const auto other = static_cast<std::size_t>(order[j]);
-                if (squared(level.foot_of(other) - middle) < squared(level.foot_of(chosen) - middle)) chosen = other;
-            }
-            const double near = 4 * reach(level, chosen);
-            const Vec3 normal = level.normal[chosen];
-            double height = 0;
-            int members = 0;
-            for (std::size_t j = begin; j < end; ++j) {
-                const auto other = static_cast<std::size_t>(order[j]);
-                const double along = dot(level.normal[other], normal);
-                if (squared(level.foot_of(other) - level.foot_of(chosen)) > near) continue;
-                if (other != chosen && !(std::abs(along) >= one_sheet)) continue;
-                const double over = dot(level.at(other) - level.foot_of(other), level.normal[other]);
-                if (!std::isfinite(over)) continue;
-                height += along < 0 ? -over : over;
-                ++members;
-            }
-            const Vec3 foot = level.foot_of(chosen);
+            const auto members = std::span(order).subspan(begin, end - begin);
+            const std::size_t chosen = middle_member(level, members);
+            const Vec3 foot = level.foot_of(chosen), normal = level.normal[chosen];
+            const double height = mean_height(level, members, chosen);
             store(above.foot.data() + 3 * g, foot);
-            store(above.position.data() + 3 * g, members > 0 ? foot + height / members * normal : foot);
+            store(above.position.data() + 3 * g, height != 0 ? foot + height * normal : foot);
             above.normal[g] = normal;
             above.representative[g] = static_cast<std::int32_t>(chosen);
         }

@@ -159,7 +159,7 @@ void RungFits::average_element(std::size_t i, Rung& found) {
         if (other == i || !std::isfinite(found.size[other])) continue;
         const double along = dot(found.normal[other], normal);
         // Other sheets and far sides look elsewhere.
-        if (!(std::abs(along) >= 0.3)) continue;
+        if (!(std::abs(along) >= one_sheet)) continue;
         const double sign = along < 0 ? -1 : 1;
         const Vec3 there = sign * found.normal[other], d = level_.foot_of(other) - foot;
         const double away = squared(d);

@@ -1,4 +1,4 @@
-// Each rung fits half as many neighbours again as the one below, about the foot that the one below found, since a ball
+// Each rung fits 1.44 times as many neighbours as the one below, about the foot that the one below found, since a ball
 // about a noisy point holds more of its own side. Wide windows stand on the elements of a coarser level. The error of a
 // fit is its variance, known from the noise, and its bias, told by what the next rung changes beyond the two fits'
 // noise; both averaged over the surface near the element, without which the choice would follow the noise. Comparable:
@@ -42,6 +42,14 @@ constexpr std::array<Traits, families> traits = {
 
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
+}
+
+/// Variance of a family's value relative to the fit's.
+double relative_variance(const Rung& rung, int family, std::size_t i) {
+    const double even = traits[static_cast<std::size_t>(family)].variance;
+    if (family == static_cast<int>(Family::half_slope)) return even * rung.spread[0][i];
+    if (family == static_cast<int>(Family::slope)) return even * rung.spread[1][i];
+    return even;
 }
 
 /// What the ladder knows of the elements of a level.
@@ -177,12 +185,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
     const int q = of_quartic(family) ? 1 : 0;
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
-    const int half = static_cast<int>(Family::half_slope), whole = static_cast<int>(Family::slope);
-    const auto relative = [&](const Rung& on, std::size_t i) -> double {
-        return family == half    ? known.variance * on.spread[0][i]
-               : family == whole ? known.variance * on.spread[1][i]
-                                 : known.variance;
-    };
+    const auto relative = [&](const Rung& on, std::size_t i) { return relative_variance(on, family, i); };
     const auto unbiased = [&](const Rung& on, std::size_t i) {
         return on.density[family][i] - noise[i] * relative(on, i) * on.trace[q][i];
     };

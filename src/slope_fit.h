@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "unit_cholesky.h"
+
 namespace gaussmap {
 
 /// normal_u = s[0][0] u + s[0][1] v + …, normal_v = s[1][0] u + s[1][1] v + …
@@ -38,17 +40,8 @@ class SlopeFit {
         // The linear terms are the last, so that the last two rows of the triangular system hold all that is asked for.
         constexpr int first = most - Terms;
         double a[Terms][Terms], y[Terms][sides], scale[Terms], total = total_;
+        if (!unit_cholesky(a_, rank_tolerance, a, scale)) return false;
         for (int i = 0; i < Terms; ++i) {
-            if (!(a_[first + i][first + i] > 0)) return false;
-            scale[i] = 1 / std::sqrt(a_[first + i][first + i]);
-        }
-        for (int i = 0; i < Terms; ++i) {
-            for (int j = 0; j <= i; ++j) {
-                double value = i == j ? 1 : a_[first + i][first + j] * scale[i] * scale[j];
-                for (int k = 0; k < j; ++k) value -= a[i][k] * a[j][k];
-                if (i == j && !(value > rank_tolerance)) return false;
-                a[i][j] = i == j ? std::sqrt(value) : value / a[j][j];
-            }
             for (int s = 0; s < sides; ++s) {
                 double value = y_[first + i][s] * scale[i];
                 for (int k = 0; k < i; ++k) value -= a[i][k] * y[k][s];
