@@ -68,11 +68,9 @@ void check_surface(Points vertices, Triangles faces) {
 
 double reach(Points vertices, Triangles faces) {
     double most = 0;
-    const auto include = [&](std::size_t v) {
-        for (int d = 0; d < 3; ++d) most = std::max(most, std::abs(vertices[v][d]));
-    };
-    for (std::size_t i = 0; i < 3 * faces.count; ++i) include(static_cast<std::size_t>(faces.abc[i]));
-    for (std::size_t v = 0; faces.empty() && v < vertices.count; ++v) include(v);
+    for_surface_points(vertices, faces, [&](Vec3 p) {
+        most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    });
     return most;
 }
 

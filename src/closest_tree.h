@@ -9,6 +9,7 @@
 #include "gaussmap/distance.h"
 #include "gaussmap/neighbors.h"
 #include "triangle_tree.h"
+#include "vec.h"
 
 namespace gaussmap {
 
@@ -28,6 +29,13 @@ double squared_distance(const ClosestTree& tree, std::uint32_t slot, Vec3 q);
 
 /// \throw std::invalid_argument as ClosestIndex does.
 void check_surface(Points vertices, Triangles faces);
+
+/// Call body(p) for the vertices that faces use, as often as they do; for all where there are no faces.
+template <class Body>
+void for_surface_points(Points vertices, Triangles faces, Body&& body) {
+    for (std::size_t i = 0; i < 3 * faces.count; ++i) body(load(vertices[static_cast<std::size_t>(faces.abc[i])]));
+    for (std::size_t v = 0; faces.empty() && v < vertices.count; ++v) body(load(vertices[v]));
+}
 
 /// The largest absolute coordinate of the vertices that faces use, of all where there are no faces.
 double reach(Points vertices, Triangles faces);

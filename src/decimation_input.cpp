@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "bounding_box.h"
 #include "gaussmap/neighbors.h"
 
 namespace gaussmap {
@@ -75,18 +76,16 @@ DecimationInput decimation_input(Points vertices, Triangles faces, const Executi
         points.insert(points.end(), vertices[v], vertices[v] + 3);
     }
     std::vector<std::int32_t> order = spatial_order(points, {run.threads, {}});
-    Vec3 low = load(points.data()), high = low;
+    BoundingBox box;
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::int32_t v = used[order[i]];
-        const Vec3 p = load(vertices[v]);
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        box.include(load(vertices[v]));
         order[i] = v;
         rank[v] = static_cast<std::int32_t>(i);
     }
     // Halves first: a box as large as doubles reach has a centre, and a diagonal.
-    in.centre = 0.5 * low + 0.5 * high;
-    const Vec3 half = 0.5 * high - 0.5 * low;
+    in.centre = 0.5 * box.low + 0.5 * box.high;
+    const Vec3 half = 0.5 * box.high - 0.5 * box.low;
     const double largest = std::max({half.x, half.y, half.z});
     in.diagonal = largest > 0 ? 2 * largest * length(1 / largest * half) : 1;
     for (const std::int32_t v : order) in.positions.push_back(1 / in.diagonal * (load(vertices[v]) - in.centre));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "automatic.h"
+#include "bounding_box.h"
 #include "clock.h"
 #include "jet_curvature.h"
 #include "neighbor_rows.h"
@@ -33,16 +34,10 @@ Elements elements_of(const OrderedCloud& cloud) {
     return elements;
 }
 
-/// Diagonal of the box; 0 for no points.
 double diagonal(const OrderedCloud& cloud) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 low = {infinity, infinity, infinity}, high = -low;
-    for (std::size_t i = 0; i < cloud.count(); ++i) {
-        const Vec3 p = cloud[i];
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    return cloud.count() == 0 ? 0 : length(high - low);
+    BoundingBox box;
+    for (std::size_t i = 0; i < cloud.count(); ++i) box.include(cloud[i]);
+    return box.diagonal();
 }
 
 /// Element i's values, to a place of the result.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "automatic.h"
+#include "bounding_box.h"
 #include "jet_curvature.h"
 #include "normal_regression.h"
 #include "one_ring.h"
@@ -31,19 +32,12 @@ Elements elements_of(Points vertices, const VertexRings& rings) {
     return elements;
 }
 
-/// Diagonal of the box of the vertices of usable faces; 0 where there is none.
+/// Of the box of the vertices of usable faces; 0 where there is none.
 double diagonal(Points vertices, const VertexRings& rings) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    Vec3 low = {infinity, infinity, infinity}, high = -low;
-    bool any = false;
-    for (std::size_t i = 0; i < vertices.count; ++i) {
-        if (rings.degree(i) == 0) continue;
-        any = true;
-        const Vec3 p = load(vertices[i]);
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    return any ? length(high - low) : 0;
+    BoundingBox box;
+    for (std::size_t i = 0; i < vertices.count; ++i)
+        if (rings.degree(i) > 0) box.include(load(vertices[i]));
+    return box.diagonal();
 }
 
 /// Turn the fitted normals to the sides of the result's, and the shape operators with them.

@@ -1,10 +1,10 @@
 // Two-sided distances from samples: every sample's exact closest point, summed up in blocks of a fixed size.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "bounding_box.h"
 #include "closest_tree.h"
 #include "parallel.h"
 #include "surface_samples.h"
@@ -53,15 +53,10 @@ void check_named(const char* name, Points vertices, Triangles faces) {
 }  // namespace
 
 double box_diagonal(Points vertices, Triangles faces) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    double low[3] = {infinity, infinity, infinity}, high[3] = {-infinity, -infinity, -infinity};
-    const auto include = [&](std::size_t v) {
-        for (int d = 0; d < 3; ++d)
-            low[d] = std::min(low[d], vertices[v][d]), high[d] = std::max(high[d], vertices[v][d]);
-    };
-    for (std::size_t i = 0; i < 3 * faces.count; ++i) include(static_cast<std::size_t>(faces.abc[i]));
-    for (std::size_t v = 0; faces.empty() && v < vertices.count; ++v) include(v);
-    return low[0] <= high[0] ? std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) : 0;
+    BoundingBox box;
+    for_surface_points(vertices, faces, [&](Vec3 p) { box.include(p); });
+    const Vec3 d = box.high - box.low;
+    return box.empty() ? 0 : std::hypot(d.x, d.y, d.z);  // of boxes near the ends of the exponents too
 }
 
 SurfaceDistance surface_distance(Points a, Triangles faces_a, Points b, Triangles faces_b,
