@@ -178,15 +178,15 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
 }
 
 /// An upper bound of the two-sided Hausdorff distance over the diagonal; infinite where it is more than `limit`.
-double proven_error(const DecimationInput& in, const ClosestIndex& fine, const Decimation& made, double limit,
-                    const Execution& run) {
-    const std::vector<double> flat = in.flat();
+/// \param flat  the input's positions, which `fine` is of.
+double proven_error(const DecimationInput& in, const std::vector<double>& flat, const ClosestIndex& fine,
+                    const Decimation& made, double limit, const Execution& run) {
+    if (made.faces.empty()) return std::numeric_limits<double>::infinity();
     std::vector<double> coarse;
     for (std::size_t i = 0; i < made.vertices.size(); i += 3) {
         const Vec3 p = 1 / in.diagonal * (load(&made.vertices[i]) - in.centre);
         coarse.insert(coarse.end(), {p.x, p.y, p.z});
     }
-    if (made.faces.empty()) return std::numeric_limits<double>::infinity();
     HausdorffOptions options;
     options.limit = limit;
     options.tolerance = limit / 100;
@@ -201,8 +201,8 @@ double proven_error(const DecimationInput& in, const ClosestIndex& fine, const D
 /// Bisection of the number of faces, by ratios: the distance falls with it, if not strictly, and what is given back was
 /// proven.
 Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options) {
-    const std::vector<double> flat = in.flat();
     if (in.faces.empty()) return decimate_to_faces(in, options);
+    const std::vector<double> flat = in.flat();
     const ClosestIndex fine(flat, in.corners, {options.run.threads, {}});
     options.faces = in.faces.size();
     const Execution run = options.run;
@@ -214,7 +214,7 @@ Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options)
         // The first trials look low: most meshes hold far more faces than an error of interest needs.
         options.faces = static_cast<std::size_t>(std::sqrt(enough * too_few));
         Decimation made = decimate_to_faces(in, options);
-        const double bound = proven_error(in, fine, made, options.error, run);
+        const double bound = proven_error(in, flat, fine, made, options.error, run);
         const bool stuck = made.stop == DecimationStop::validity;
         if (bound <= options.error) {
             enough = static_cast<double>(made.faces.size() / 3);
