@@ -152,6 +152,13 @@ std::vector<std::string> Outputs::losses(const gaussmap::Geometry& geometry) con
     return out;
 }
 
+void report_written(Json& report, const Outputs& outputs, const gaussmap::Geometry& written) {
+    report["peak_bytes"] = peak_bytes();
+    report["outputs"] = outputs.paths;
+    report["notes"] = written.notes;
+    for (const std::string& loss : outputs.losses(written)) report["notes"].push_back(loss);
+}
+
 gaussmap::Geometry read_input(const std::string& path, const Common& common) {
     Progress progress("reading", common.quiet);
     return gaussmap::read(path, Format::detect, progress.run(common.threads));

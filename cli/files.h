@@ -8,6 +8,7 @@
 #include "commandline.h"
 #include "console.h"
 #include "gaussmap/io.h"
+#include "report.h"
 
 namespace cli {
 
@@ -38,6 +39,10 @@ struct Outputs {
   private:
     gaussmap::Format format(const std::string& path) const;
 };
+
+/// The last keys of a report on a geometry that was written: peak_bytes, outputs, and the notes of the geometry and of
+/// what the formats lost.
+void report_written(Json& report, const Outputs& outputs, const gaussmap::Geometry& written);
 
 /// Read the input, with a bar.
 gaussmap::Geometry read_input(const std::string& path, const Common& common);

@@ -31,8 +31,8 @@ struct Options {
 
 constexpr const char* about =
     "Fewer triangles for the same surface, features kept. What comes out is as valid as what went in: no triangle "
-    "turned "
-    "over, no side with a further triangle, no degenerate triangle, parts, handles and holes kept. Normals, colours, "
+    "turned over, no side with a further triangle, no degenerate triangle, parts, handles and holes kept. Normals, "
+    "colours, "
     "texture coordinates and other values are carried over, seams of texture coordinates kept. Non-manifold, open and "
     "duplicated input is taken as it is. Where no valid step is left before the target, the report says why.\n\n"
     "The error that is reported is the larger of both ways, over the diagonal of the input's box, as compare measures "
@@ -92,10 +92,13 @@ void check(const CommandLine& line, const Options& o) {
                           fmt::format("{} is for --method best, and the method is {}", option, o.method));
 }
 
+std::size_t faces_wanted(const Options& o, const Geometry& geometry) {
+    return o.ratio > 0 ? static_cast<std::size_t>(o.ratio * static_cast<double>(geometry.face_count())) : o.faces;
+}
+
 gaussmap::DecimateOptions plan(const Options& o, const Geometry& geometry, const gaussmap::Execution& run) {
     gaussmap::DecimateOptions options;
-    options.faces = o.faces;
-    if (o.ratio > 0) options.faces = static_cast<std::size_t>(o.ratio * static_cast<double>(geometry.face_count()));
+    options.faces = faces_wanted(o, geometry);
     options.error = o.error;
     options.method = o.method == "qem"    ? DecimationMethod::qem
                      : o.method == "edge" ? DecimationMethod::edge
@@ -202,12 +205,10 @@ void decimate(int argc, char** argv) {
     report["faces_out"] = after.face_count();
     report["vertices_out"] = after.vertex_count();
     report["method"] = o.method;
-    report["target"] =
-        o.error > 0 ? Json()
-                    : Json(o.ratio > 0 ? static_cast<std::size_t>(o.ratio * static_cast<double>(geometry.face_count()))
-                                       : o.faces);
-    report["reached"] = made.stop == gaussmap::DecimationStop::target;
-    report["reason"] = made.stop == gaussmap::DecimationStop::target ? Json() : Json(reason(made));
+    report["target"] = o.error > 0 ? Json() : Json(faces_wanted(o, geometry));
+    const bool reached = made.stop == gaussmap::DecimationStop::target;
+    report["reached"] = reached;
+    report["reason"] = reached ? Json() : Json(reason(made));
     report["degenerate"] = made.degenerate;
     report["non_finite"] = made.non_finite;
     report["error"] = error;
@@ -217,10 +218,7 @@ void decimate(int argc, char** argv) {
                          {"fit", made.seconds_fit}, {"decimate", decimating},
                          {"measure", measuring},    {"write", watch.lap()}};
     report["seconds"]["total"] = watch.total();
-    report["peak_bytes"] = peak_bytes();
-    report["outputs"] = o.outputs.paths;
-    report["notes"] = after.notes;
-    for (const std::string& loss : o.outputs.losses(after)) report["notes"].push_back(loss);
+    report_written(report, o.outputs, after);
     present(report, o.input + ": decimation", table_of(report), line.common);
 }
 

@@ -159,10 +159,7 @@ void normals(int argc, char** argv) {
     report["seconds"]["read"] = reading;
     report["seconds"]["write"] = watch.lap();
     report["seconds"]["total"] = watch.total();
-    report["peak_bytes"] = peak_bytes();
-    report["outputs"] = o.outputs.paths;
-    report["notes"] = geometry.notes;
-    for (const std::string& loss : o.outputs.losses(geometry)) report["notes"].push_back(loss);
+    report_written(report, o.outputs, geometry);
     present(report, o.input + ": normals", table_of(report), line.common);
 }
 

@@ -136,10 +136,7 @@ void sample(int argc, char** argv) {
     report["seed"] = line.common.seed;
     report["threads"] = line.common.threads;
     report["seconds"] = {{"read", reading}, {"sample", sampling}, {"write", watch.lap()}, {"total", watch.total()}};
-    report["peak_bytes"] = peak_bytes();
-    report["outputs"] = o.outputs.paths;
-    report["notes"] = cloud.notes;
-    for (const std::string& loss : o.outputs.losses(cloud)) report["notes"].push_back(loss);
+    report_written(report, o.outputs, cloud);
     present(report, o.input + ": sample", table_of(report), line.common);
 }
 
