@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gaussmap/distance.h"
+#include "gaussmap/surfaces.h"
 #include "support.h"
 
 namespace support {
@@ -66,5 +67,9 @@ struct Shape {
         return least;
     }
 };
+
+inline Shape shape_of(const gaussmap::Surface& surface) {
+    return {surface.vertices, surface.faces};
+}
 
 }  // namespace support

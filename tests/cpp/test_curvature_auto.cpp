@@ -5,6 +5,7 @@
 
 #include "gaussmap/curvature.h"
 #include "gaussmap/surfaces.h"
+#include "mesh_cases.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -13,7 +14,6 @@ namespace {
 
 using Array = std::vector<double>;
 using Indices = std::vector<std::int32_t>;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr SurfaceOptions jittered = {.jitter = 0.25, .noise = 0, .seed = 7};
 constexpr SurfaceOptions noisy = {.jitter = 0.25, .noise = 0.01, .seed = 7};
 
@@ -131,23 +131,15 @@ TEST(AutoMesh, SameBitsForAnyThreads) {
     const MeshCurvature one = automatic(s, 1);
     for (const int threads : {2, 7}) {
         const MeshCurvature more = automatic(s, threads);
-        EXPECT_TRUE(support::same_bits(one.density, more.density));
-        EXPECT_TRUE(support::same_bits(one.error, more.error));
-        EXPECT_TRUE(support::same_bits(one.normals, more.normals));
+        support::expect_same_bits(one, more);
         EXPECT_EQ(one.choice, more.choice);
     }
 }
 
 TEST(AutoMesh, OddMeshes) {
-    const Surface s = sphere(2);
-    Array vertices = s.vertices;
-    Indices faces = s.faces;
+    const Surface s = support::odd_sphere();
     const auto n = static_cast<std::int32_t>(s.density.size());
-    // Isolated; not a number, with a face; a face of a repeated corner; a third face on an edge; a duplicate of 0.
-    for (const double x : {5.0, 5.0, 5.0, not_a_number, 0.0, 0.0}) vertices.push_back(x);
-    vertices.insert(vertices.end(), s.vertices.begin(), s.vertices.begin() + 3);
-    faces.insert(faces.end(), {0, 1, n + 1, 2, 2, 3, s.faces[0], s.faces[1], 40, n + 2, s.faces[3], s.faces[4]});
-    const MeshCurvature result = by(Estimator::automatic, vertices, faces);
+    const MeshCurvature result = by(Estimator::automatic, s.vertices, s.faces);
     EXPECT_EQ(result.undefined, 2u);
     EXPECT_TRUE(std::isnan(result.density[static_cast<std::size_t>(n)]));
     EXPECT_TRUE(std::isnan(result.density[static_cast<std::size_t>(n) + 1]));

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "clouds.h"
 #include "gaussmap/curvature.h"
 #include "gaussmap/surfaces.h"
+#include "mesh_cases.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -12,7 +14,6 @@ namespace {
 
 using Array = std::vector<double>;
 using Indices = std::vector<std::int32_t>;
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr SurfaceOptions jittered = {.jitter = 0.25, .noise = 0, .seed = 7};
 
 MeshCurvatureOptions jet(int degree, int k = 20, int threads = 0) {
@@ -124,9 +125,7 @@ TEST(MeshFits, SameBitsForAnyThreads) {
         const MeshCurvature one = mesh_curvature(s.vertices, s.faces, {}, make(1));
         for (const int threads : {2, 7}) {
             const MeshCurvature more = mesh_curvature(s.vertices, s.faces, {}, make(threads));
-            EXPECT_TRUE(support::same_bits(one.density, more.density));
-            EXPECT_TRUE(support::same_bits(one.error, more.error));
-            EXPECT_TRUE(support::same_bits(one.normals, more.normals));
+            support::expect_same_bits(one, more);
         }
     }
 }
@@ -141,16 +140,10 @@ TEST(MeshFits, Borders) {
 }
 
 TEST(MeshFits, OddMeshes) {
-    const Surface s = sphere(2);
-    Array vertices = s.vertices;
-    Indices faces = s.faces;
+    const Surface s = support::odd_sphere();
     const auto n = static_cast<std::int32_t>(s.density.size());
-    // Isolated; not a number, with a face; a face of a repeated corner; a third face on an edge; a duplicate of 0.
-    for (const double x : {5.0, 5.0, 5.0, not_a_number, 0.0, 0.0}) vertices.push_back(x);
-    vertices.insert(vertices.end(), s.vertices.begin(), s.vertices.begin() + 3);
-    faces.insert(faces.end(), {0, 1, n + 1, 2, 2, 3, s.faces[0], s.faces[1], 40, n + 2, s.faces[3], s.faces[4]});
     for (const MeshCurvatureOptions& options : {jet(4), regression()}) {
-        const MeshCurvature result = mesh_curvature(vertices, faces, {}, options);
+        const MeshCurvature result = mesh_curvature(s.vertices, s.faces, {}, options);
         EXPECT_EQ(result.undefined, 2u);
         for (const auto i : {n, n + 1}) {
             const auto at = static_cast<std::size_t>(i);
@@ -177,11 +170,8 @@ TEST(MeshFits, FewNeighbours) {
 
 TEST(MeshFits, Messages) {
     const Surface s = sphere(1);
-    const auto message = [&](const MeshCurvatureOptions& options) -> std::string {
-        try {
-            mesh_curvature(s.vertices, s.faces, {}, options);
-        } catch (const std::invalid_argument& error) { return error.what(); }
-        return "";
+    const auto message = [&](const MeshCurvatureOptions& options) {
+        return support::refusal([&] { mesh_curvature(s.vertices, s.faces, {}, options); });
     };
     EXPECT_EQ(message(jet(1)), "degree = 1 has no curvature; estimator = jet takes 2 to 4");
     EXPECT_EQ(message(jet(5)), "degree = 5 is outside 1 to 4");

@@ -12,12 +12,9 @@ using support::Random;
 using support::random_points;
 using support::refusal;
 using support::Shape;
+using support::shape_of;
 
 namespace {
-
-Shape shape_of(const Surface& surface) {
-    return {surface.vertices, surface.faces};
-}
 
 /// Triangles of all sizes and shapes at random: needles, slivers, segments and points among them.
 Shape soup(std::size_t count, std::uint64_t seed) {

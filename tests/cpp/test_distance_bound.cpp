@@ -9,12 +9,9 @@ using support::Random;
 using support::random_points;
 using support::refusal;
 using support::Shape;
+using support::shape_of;
 
 namespace {
-
-Shape shape_of(const Surface& surface) {
-    return {surface.vertices, surface.faces};
-}
 
 HausdorffInterval bound(const Shape& a, const Shape& b, double tolerance) {
     HausdorffOptions options;
