@@ -71,7 +71,7 @@ test-tsan: setup
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
 	@cmake --preset release >/dev/null
-	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null
+	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null | sed '/clang-tidy-14 --use-color/d'
 
 bench: setup
 	@cmake --preset bench >/dev/null

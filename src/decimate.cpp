@@ -217,7 +217,8 @@ Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options)
         const double bound = proven_error(in, flat, fine, made, options.error, run);
         const bool stuck = made.stop == DecimationStop::validity;
         if (bound <= options.error) {
-            enough = static_cast<double>(made.faces.size() / 3);
+            const std::size_t faces = made.faces.size() / 3;
+            enough = static_cast<double>(faces);
             best = std::move(made);
             best.error_bound = bound;
             if (stuck) break;
