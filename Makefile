@@ -7,6 +7,7 @@
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
+#   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -25,7 +26,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -98,6 +99,12 @@ bench-decimate: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_decimate
 	/usr/bin/python3 bench/decimate.py build/bench $(IN)
+
+paper: packages = packages.txt bench/packages.txt
+paper: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_accuracy bench_decimate
+	/usr/bin/python3 bench/paper build/bench docs/paper $(if $(QUICK),--quick)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null
