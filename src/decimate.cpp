@@ -156,8 +156,8 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     mesh = RingMesh({}, {});
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
-    if (options.method == DecimationMethod::best && !options.fast && !unchanged)
-        bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;
+    if (fitted) bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
     watch.add_to(out.seconds_fit);
 
     for (const Vec3 q : coarse.position) {
@@ -166,7 +166,8 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     }
     for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
     if (options.sources) {
-        out.vertex_source = vertex_sources(in, coarse, {options.run.threads, {}});
+        out.vertex_source =
+            fitted ? vertex_sources(in, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
         if (!options.seams.empty()) {
             RingMesh fine(in.positions, in.corners);
             tag_seams(fine, in, options.seams);
