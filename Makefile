@@ -7,6 +7,7 @@
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
+#   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
 #   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
@@ -26,7 +27,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate paper fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -99,6 +100,10 @@ bench-decimate: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_decimate
 	/usr/bin/python3 bench/decimate.py build/bench $(IN)
+
+bench-real: packages = packages.txt bench/packages.txt
+bench-real: release
+	/usr/bin/python3 bench/real build/release docs/real
 
 paper: packages = packages.txt bench/packages.txt
 paper: setup
