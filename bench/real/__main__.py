@@ -89,7 +89,7 @@ def lion_normals(real):
     return ["", "The lion's own normals (of 8 + 8 bits) and those of `gaussmap normals` are "
             f"{np.median(angles):.1f}° apart in the median, {np.percentile(angles, 90):.1f}° at the 90th percentile. "
             f"The fan on its own normals has a median density of {np.nanmedian(density(theirs)):.3g}, our default "
-            f"{np.nanmedian(density(ply.read(real.folder / 'lion.ply')[0])):.3g}: what is between them is the rounding of those bits.", ""]
+            f"{np.nanmedian(density(ply.read(real.folder / 'lion.ply')[0])):.3g}.", ""]
 
 
 def noisy_sphere(real):
