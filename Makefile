@@ -9,6 +9,8 @@
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make bench-python    the package against the library, and against peers in Python
+#   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
+#   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -28,7 +30,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan test-python python-wheel python-stubs lint bench bench-accuracy bench-distance bench-decimate bench-python fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan test-python python-wheel python-stubs lint bench bench-accuracy bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -93,7 +95,7 @@ python-stubs: python-wheel
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
 	@cmake --preset release >/dev/null
-	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null
+	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null | sed '/clang-tidy-14 --use-color/d'
 
 bench: setup
 	@cmake --preset bench >/dev/null
@@ -125,6 +127,16 @@ bench-python: release python-wheel
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_python_call
 	/usr/bin/python3 bench/python.py build/bench build/python/dist
+
+bench-real: packages = packages.txt bench/packages.txt
+bench-real: release
+	/usr/bin/python3 bench/real build/release docs/real
+
+paper: packages = packages.txt bench/packages.txt
+paper: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_accuracy bench_decimate
+	/usr/bin/python3 bench/paper build/bench docs/paper $(if $(QUICK),--quick)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null
