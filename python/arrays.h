@@ -26,6 +26,8 @@ namespace nb = nanobind;
 
 /// Results by name.
 using Record = nb::typed<nb::dict, nb::str, nb::any>;
+/// Several results in a row.
+using Tuple = nb::typed<nb::tuple, nb::any, nb::ellipsis>;
 template <class T>
 using Rows = nb::ndarray<const T, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using PointArray = Rows<double>;
@@ -47,18 +49,19 @@ inline gaussmap::Triangles triangles(const std::optional<FaceArray>& array) {
 
 /// The vector as an array of `columns` values a row (one-dimensional for 1), its memory handed over.
 template <class T>
-nb::object array(std::vector<T>&& values, std::size_t columns = 1) {
+nb::any array(std::vector<T>&& values, std::size_t columns = 1) {
     auto* kept = new std::vector<T>(std::move(values));
     const nb::capsule owner(kept, [](void* vector) noexcept { delete static_cast<std::vector<T>*>(vector); });
     if (kept->empty()) kept->reserve(1);  // an array of nothing still has an address
     const std::size_t shape[] = {kept->size() / columns, columns};
-    return nb::cast(nb::ndarray<nb::numpy, T>(kept->data(), columns == 1 ? 1 : 2, shape, owner));
+    const nb::ndarray<nb::numpy, T> made(kept->data(), columns == 1 ? 1 : 2, shape, owner);
+    return nb::steal<nb::any>(nb::cast(made).release());
 }
 
 /// The same; None for what was not made.
 template <class T>
 nb::object array_or_none(std::vector<T>&& values, std::size_t columns = 1) {
-    return values.empty() ? nb::none() : array(std::move(values), columns);
+    return values.empty() ? nb::object(nb::none()) : nb::object(array(std::move(values), columns));
 }
 
 /// The value that goes by the name. \throw std::invalid_argument with the names there are

@@ -111,8 +111,8 @@ Record cloud_curvature(const PointArray& cloud, const std::optional<PointArray>&
     return out;
 }
 
-nb::object mesh_normals(const PointArray& vertices, const FaceArray& faces, const std::string& weights, int threads,
-                        const nb::object& progress) {
+nb::any mesh_normals(const PointArray& vertices, const FaceArray& faces, const std::string& weights, int threads,
+                     const nb::object& progress) {
     const auto kind = weights_named(weights);
     return array(released(threads, progress,
                           [&](const gaussmap::Execution& run) {
@@ -146,7 +146,7 @@ Record cloud_normals(const PointArray& cloud, int k, const std::string& method, 
 
 using ValueArray = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 
-nb::object colors(const ValueArray& values, bool diverging) {
+nb::any colors(const ValueArray& values, bool diverging) {
     std::vector<std::uint8_t> rgb;
     rgb.reserve(3 * values.shape(0));
     for (std::size_t i = 0; i < values.shape(0); ++i) {

@@ -76,7 +76,7 @@ nb::list properties_out(std::vector<gaussmap::Property>&& properties) {
     nb::list out;
     for (gaussmap::Property& property : properties) {
         const std::string name = property.name, count_type = kind_of(property.count_type).name;
-        nb::object offsets = property.list ? array(std::move(property.offsets)) : nb::none();
+        nb::object offsets = property.list ? nb::object(array(std::move(property.offsets))) : nb::none();
         out.append(nb::make_tuple(name, values_of(std::move(property)), offsets, count_type));
     }
     return out;

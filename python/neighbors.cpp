@@ -10,15 +10,15 @@ namespace {
 
 using namespace nb::literals;
 
-nb::object nearest_neighbors(const PointArray& cloud, int k, int threads, const nb::object& progress) {
+nb::any nearest_neighbors(const PointArray& cloud, int k, int threads, const nb::object& progress) {
     auto found = released(threads, progress, [&](const gaussmap::Execution& run) {
         return gaussmap::nearest_neighbors(points(cloud), k, run);
     });
     return array(std::move(found.index), static_cast<std::size_t>(k));
 }
 
-nb::object nearest_points(const PointArray& cloud, const PointArray& queries, int k, int threads,
-                          const nb::object& progress) {
+Tuple nearest_points(const PointArray& cloud, const PointArray& queries, int k, int threads,
+                     const nb::object& progress) {
     auto found = released(threads, progress, [&](const gaussmap::Execution& run) {
         const gaussmap::NeighborIndex index(points(cloud), run);
         return index.nearest(points(queries), k, true, run);
@@ -27,8 +27,8 @@ nb::object nearest_points(const PointArray& cloud, const PointArray& queries, in
                           array(std::move(found.squared_distance), static_cast<std::size_t>(k)));
 }
 
-nb::object fans(const PointArray& cloud, const PointArray& normals, const IndexTable& neighbors, int threads,
-                const nb::object& progress) {
+Tuple fans(const PointArray& cloud, const PointArray& normals, const IndexTable& neighbors, int threads,
+           const nb::object& progress) {
     gaussmap::Neighbors rows;
     rows.k = neighbors.shape(1);
     rows.index.assign(neighbors.data(), neighbors.data() + neighbors.size());

@@ -105,9 +105,9 @@ Record surface_distance(const PointArray& a, const std::optional<FaceArray>& fac
 }
 
 /// (lower, upper, (x, y, z), within_tolerance): from a to b, lengths.
-nb::tuple hausdorff_bound(const PointArray& a, const std::optional<FaceArray>& faces_a, const PointArray& b,
-                          const std::optional<FaceArray>& faces_b, double tolerance, int threads,
-                          const nb::object& progress) {
+Tuple hausdorff_bound(const PointArray& a, const std::optional<FaceArray>& faces_a, const PointArray& b,
+                      const std::optional<FaceArray>& faces_b, double tolerance, int threads,
+                      const nb::object& progress) {
     const auto found = released(threads, progress, [&](const gaussmap::Execution& run) {
         gaussmap::HausdorffOptions options;
         options.tolerance = tolerance;
@@ -120,8 +120,8 @@ nb::tuple hausdorff_bound(const PointArray& a, const std::optional<FaceArray>& f
 }
 
 /// (distances, closest points, elements) of the queries.
-nb::tuple closest(const PointArray& vertices, const std::optional<FaceArray>& faces, const PointArray& queries,
-                  int threads, const nb::object& progress) {
+Tuple closest(const PointArray& vertices, const std::optional<FaceArray>& faces, const PointArray& queries, int threads,
+              const nb::object& progress) {
     auto found = released(threads, progress, [&](const gaussmap::Execution& run) {
         return gaussmap::ClosestIndex(points(vertices), triangles(faces), run).closest(points(queries), run);
     });
@@ -138,8 +138,8 @@ gaussmap::SamplingMethod sampling_of(const std::string& name) {
 }
 
 /// (points, faces, weights).
-nb::tuple sample_surface(const PointArray& vertices, const FaceArray& faces, std::size_t count,
-                         const std::string& method, std::uint64_t seed, int threads, const nb::object& progress) {
+Tuple sample_surface(const PointArray& vertices, const FaceArray& faces, std::size_t count, const std::string& method,
+                     std::uint64_t seed, int threads, const nb::object& progress) {
     const auto kind = sampling_of(method);
     auto found = released(threads, progress, [&](const gaussmap::Execution& run) {
         return gaussmap::sample_surface(points(vertices), triangles(faces), count, {kind, seed, run});
@@ -148,8 +148,8 @@ nb::tuple sample_surface(const PointArray& vertices, const FaceArray& faces, std
                           array(std::move(found.weights), 3));
 }
 
-nb::object poisson_subset(const PointArray& candidates, double area, std::size_t count, int threads,
-                          const nb::object& progress) {
+nb::any poisson_subset(const PointArray& candidates, double area, std::size_t count, int threads,
+                       const nb::object& progress) {
     return array(released(threads, progress, [&](const gaussmap::Execution& run) {
         return gaussmap::poisson_subset(points(candidates), area, count, run);
     }));

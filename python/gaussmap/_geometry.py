@@ -220,7 +220,7 @@ def write(path: Path, x: Any, faces: Any = None, *, normals: Any = None, format:
     if format is None and _is_lidar(name):
         from gaussmap import las
 
-        las.write(name, geometry)
+        las.write(name, geometry, like=getattr(x, "las", None))
         return
     record = record_of(geometry)
     try:

@@ -46,10 +46,10 @@ def knn(points: Any, k: int = 20, *, queries: Any = None, threads: int | None = 
         run = (thread_count(threads), report)
         if queries is not None:
             index, squared = _gaussmap.nearest_points(cloud, rows("queries", queries), count_, *run)
-            return Neighbors(index, np.sqrt(squared))
-        index = _gaussmap.nearest_neighbors(cloud, count_, *run)
+            return Neighbors(index.reshape(-1, count_), np.sqrt(squared).reshape(-1, count_))
+        index = _gaussmap.nearest_neighbors(cloud, count_, *run).reshape(-1, count_)
     if not len(cloud):
-        return Neighbors(index.reshape(0, count_), np.empty((0, count_)))
+        return Neighbors(index, np.empty((0, count_)))
     away = cloud[index] - cloud[:, None, :]
     distance = np.where(index < 0, np.inf, np.sqrt(np.einsum("nkd,nkd->nk", away, away)))
     return Neighbors(index, distance)

@@ -42,7 +42,7 @@ def _weighted(at: SurfacePoints, faces: Ints, values: AnyArray) -> Floats:
         sums = np.where(counts, sums + weight * np.where(counts, value, 0), sums)
         weights = np.where(counts, weights + weight, weights)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(weights > 0, sums / weights, np.nan)
+        return np.asarray(np.where(weights > 0, sums / weights, np.nan), np.float64)
 
 
 def _as_type(values: Floats, dtype: np.dtype[Any]) -> AnyArray:

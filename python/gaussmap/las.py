@@ -135,7 +135,7 @@ def _set(las: Any, name: str, values: AnyArray) -> None:
     las[name] = values
 
 
-def write(path: str | os.PathLike[str], x: Any, **values: Any) -> None:
+def write(path: str | os.PathLike[str], x: Any, *, like: Any = None, **values: Any) -> None:
     """Write a LAS or LAZ file, whole or not at all.
 
     A cloud that came from `read` keeps its header, VLRs and the stored bits of every dimension that was not changed;
@@ -144,6 +144,7 @@ def write(path: str | os.PathLike[str], x: Any, **values: Any) -> None:
     PDAL calls them. Faces and lists have no place.
 
     :param x: what `read` gave, or anything that `gaussmap.curvature` takes.
+    :param like: laspy.LasData of as many points, whose header and dimensions are taken; by default that of x.
     :param values: further dimensions by name, each (n,): `las.write("y.laz", cloud, total_curvature=result.density)`.
     :raises ValueError: a coordinate that is not finite (its point is named), a COPC name (its octree is not written),
         values of the wrong length or that the dimension cannot hold.
@@ -157,7 +158,7 @@ def write(path: str | os.PathLike[str], x: Any, **values: Any) -> None:
     if not finite.all():
         at = int(np.argmin(finite))
         raise ValueError(f"vertices[{at}] = {geometry.vertices[at].tolist()} is not finite; LAS holds finite points only")
-    source = getattr(x, "las", None)
+    source = getattr(x, "las", None) if like is None else like
     las = _copy(source, geometry) if source is not None and len(source.points) == len(geometry.vertices) else _new(geometry)
     given = {**geometry.attributes, **values}
     if "scalar_total_curvature" in given:

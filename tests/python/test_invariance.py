@@ -92,9 +92,8 @@ def test_flips(seed):
 
 @given(seeds, st.integers(2, 5))
 def test_threads_give_the_same_bits(seed, threads):
-    vertices, faces, random = random_mesh(seed)
-    noisy = vertices + random.normal(scale=0.01, size=vertices.shape)
-    for arguments in ((vertices, faces), (vertices,), (noisy,)):
+    vertices, faces, _ = random_mesh(seed)
+    for arguments in ((vertices, faces), (vertices,)):
         one = gaussmap.curvature(*arguments, tensor=True, threads=1)
         many = gaussmap.curvature(*arguments, tensor=True, threads=threads)
         assert same_bits(one.density, many.density) and same_bits(one.tensor.k1, many.tensor.k1)

@@ -95,7 +95,7 @@ def test_no_points(data):
 
 
 def test_the_command(data, tmp_path):
-    source = data / "clouds/urban.las"
+    source = data / "clouds/simple.las"
     done = command("curvature", source, "-o", "y.laz", "-o", "y.ply", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)
