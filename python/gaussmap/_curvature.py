@@ -145,7 +145,8 @@ def colors(values: Any, *, low: float | None = None, high: float | None = None, 
         raise ValueError(f"high = {top} is not above low = {bottom}")
     span_ = top - bottom
     scaled = (array - bottom) / span_ if span_ > 0 else np.where(np.isnan(array), np.nan, 0.0)
-    return _gaussmap.colors(np.ascontiguousarray(scaled), diverging)
+    rgb: npt.NDArray[np.uint8] = _gaussmap.colors(np.ascontiguousarray(scaled), diverging)
+    return rgb
 
 
 def _is_usable(normals: Floats | None) -> bool:

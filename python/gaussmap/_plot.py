@@ -41,7 +41,7 @@ def plot(
     shown = curvature(x, faces).density if values is None else np.asarray(values)
     shown = row_values("values", shown, len(subject.vertices))
     if subject.faces is not None:
-        data = pyvista.PolyData.from_regular_faces(subject.vertices, subject.faces.astype(np.int64))
+        data = pyvista.PolyData.from_regular_faces(subject.vertices, subject.faces)
     else:
         data = pyvista.PolyData(subject.vertices)
     data.point_data["colour"] = colors(shown, diverging=diverging)

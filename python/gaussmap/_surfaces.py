@@ -42,7 +42,8 @@ def _weighted(at: SurfacePoints, faces: Ints, values: AnyArray) -> Floats:
         sums = np.where(counts, sums + weight * np.where(counts, value, 0), sums)
         weights = np.where(counts, weights + weight, weights)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.asarray(np.where(weights > 0, sums / weights, np.nan), np.float64)
+        out: Floats = np.where(weights > 0, sums / weights, np.nan)
+    return out
 
 
 def _as_type(values: Floats, dtype: np.dtype[Any]) -> AnyArray:
@@ -65,7 +66,8 @@ def _carried(at: SurfacePoints, faces: Ints, attributes: dict[str, AnyArray]) ->
 
 def _unit(normals: Floats) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
-        return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        out: Floats = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    return out
 
 
 @dataclass(eq=False, repr=False)
