@@ -225,7 +225,7 @@ TEST(PictureErrors, Geometry) {
     EXPECT_EQ(complaint([&] { draw(only_nan, no_faces, {1}); }), "nothing to draw: no vertex is finite");
     EXPECT_EQ(complaint([&] { draw(bad, face, values); }), "nothing to draw: no face has three finite corners");
     EXPECT_EQ(complaint([&] { draw(far, face, values); }),
-              "draw: the vertices are too far apart for double precision; scale them down");
+              "the vertices are too far apart for double precision; scale them down");
     EXPECT_EQ(complaint([&] { draw(three, face, {1, 2}); }), "values has 2 entries, but there are 3 vertices");
     EXPECT_EQ(complaint([&] { draw(three, face, values, Points(three.data(), 2)); }),
               "normals has 2 entries, but there are 3 vertices");
