@@ -21,4 +21,5 @@ NB_MODULE(_gaussmap, m) {
     binding::bind_surfaces(m);
     binding::bind_shapes(m);
     binding::bind_files(m);
+    binding::bind_page(m);
 }

@@ -10,5 +10,6 @@ void bind_neighbors(nanobind::module_& m);
 void bind_surfaces(nanobind::module_& m);
 void bind_shapes(nanobind::module_& m);
 void bind_files(nanobind::module_& m);
+void bind_page(nanobind::module_& m);
 
 }  // namespace binding

@@ -185,6 +185,13 @@ Record weld(const Record& record) {
 void bind_files(nb::module_& m) {
     m.def("read", read, "path"_a, "format"_a, "threads"_a, "progress"_a.none());
     m.def("write", write, "path"_a, "geometry"_a, "format"_a, "ascii"_a);
+    m.def(
+        "write_file",
+        [](const std::string& path, const std::string& text) {
+            const nb::gil_scoped_release release;
+            gaussmap::write_file(path, text);
+        },
+        "path"_a, "text"_a);
     m.def("triangulate", triangulate, "geometry"_a);
     m.def("weld", weld, "geometry"_a);
     m.def("known_extensions", &gaussmap::known_extensions);

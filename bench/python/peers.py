@@ -85,7 +85,7 @@ def pgeof_variation():
         neighbours, _ = pgeof.knn_search(points, points, 20)
         offsets = np.arange(len(v) + 1, dtype=np.uint32) * 20
         features = pgeof.compute_features(points, neighbours.ravel().astype(np.uint32), offsets)
-        return features[:, pgeof.EFeatureID.Curvature if hasattr(pgeof.EFeatureID, "Curvature") else 5]
+        return features[:, int(pgeof.EFeatureID.Curvature)]
 
     return run
 
@@ -142,7 +142,9 @@ def table(title, runs, v, f, truth):
                 errors[name] = f"{type(problem).__name__}"
                 continue
             times[name] = min(times[name], time.perf_counter() - begin)
-            errors[name] = f"{error(np.asarray(found, float), truth, 'best scale' in name):.4f}"
+            values = np.asarray(found, float)
+            made = np.isfinite(values) & (values != 0)
+            errors[name] = f"{error(values, truth, 'best scale' in name):.4f}" if made.any() else "no values"
     for name in runs:
         ratio = times[name] / times["gaussmap"]
         print(f"| {name} | {errors[name]} | {1e3 * times[name]:.1f} | {ratio:.1f} |")

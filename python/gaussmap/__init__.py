@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from gaussmap._gaussmap import Cancelled
     from gaussmap._geometry import Geometry, Polygons, read, triangulate, weld, write
     from gaussmap._neighbors import Fans, Neighbors, fans, knn
+    from gaussmap._page import Page, to_html
     from gaussmap._plot import plot
     from gaussmap._surfaces import Comparison, Decimation, Deviation, Samples, closest, compare, decimate, sample
 
@@ -36,6 +37,7 @@ _homes = {
     "_gaussmap": ("Cancelled",),
     "_geometry": ("Geometry", "Polygons", "read", "triangulate", "weld", "write"),
     "_neighbors": ("Fans", "Neighbors", "fans", "knn"),
+    "_page": ("Page", "to_html"),
     "_plot": ("plot",),
     "_surfaces": ("Comparison", "Decimation", "Deviation", "Samples", "closest", "compare", "decimate", "sample"),
 }
@@ -52,6 +54,7 @@ __all__ = [  # noqa: F822  (found by __getattr__)
     "Geometry",
     "Neighbors",
     "Normals",
+    "Page",
     "Polygons",
     "PrincipalCurvatures",
     "Samples",
@@ -68,6 +71,7 @@ __all__ = [  # noqa: F822  (found by __getattr__)
     "read",
     "sample",
     "shapes",
+    "to_html",
     "triangulate",
     "weld",
     "write",

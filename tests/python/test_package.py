@@ -127,3 +127,16 @@ def test_a_picture(tmp_path):
     assert (tmp_path / "torus.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     with pytest.raises(ValueError, match=r"values has shape \(2,\)"):
         gaussmap.plot(gaussmap.shapes.torus(), values=[1, 2])
+
+
+def test_a_page(tmp_path):
+    torus = gaussmap.shapes.torus()
+    try:
+        page = gaussmap.to_html(torus, values=gaussmap.curvature(torus, tensor=True), path=tmp_path / "torus.html")
+    except RuntimeError as problem:
+        pytest.skip(f"skipped: {problem}")
+    assert page == (tmp_path / "torus.html").read_text() and page.startswith("<!") and "k1" in page
+    assert page._repr_html_().startswith('<iframe srcdoc="&lt;!') and repr(page).startswith("<Page: ")
+    assert len(gaussmap.to_html(torus, beside=gaussmap.shapes.sphere())) > len(page) / 2
+    with pytest.raises(ValueError, match=r"value has shape \(2,\); \(1296,\) is wanted"):
+        gaussmap.to_html(torus, values=[1, 2])
