@@ -26,7 +26,8 @@ PROGRAM := build/release/gaussmap
 PYTHON := build/python/bin/python
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
-# Debian packages that are listed but not installed, nor there as a program of that name (node and npm of another source); sudo where we are not root.
+# Debian packages that are listed but not installed, nor there as a program of that name (npm of another source); sudo
+# where we are not root.
 packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
