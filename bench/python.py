@@ -17,7 +17,9 @@ def main():
     python = python_of_peers(folder / "venv", SOURCE / "python/requirements.txt")
     if python is None:
         return 1
-    subprocess.run([python, "-m", "pip", "install", "-q", "--force-reinstall", "--no-deps", *wheels.glob("*.whl")], check=True)
+    subprocess.run(
+        [python, "-m", "pip", "install", "-q", "--force-reinstall", "--no-deps", *wheels.glob("*.whl")], check=True
+    )
     mesh = folder / "bumpy.ply"  # 1,310,720 triangles
     subprocess.run([build / "gaussmap", "shape", "bumpy", "--subdivisions", "8", "--quiet", "-o", mesh], check=True)
     print("\n## The binding\n", flush=True)

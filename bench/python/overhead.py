@@ -12,7 +12,9 @@ import gaussmap
 
 
 def seconds_of(threads, build, mesh, geometry, rounds=21):
-    child = subprocess.Popen([f"{build}/bench/python_call", mesh, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    child = subprocess.Popen(
+        [f"{build}/bench/python_call", mesh, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
     ours, theirs = [], []
     for _ in range(rounds):
         child.stdin.write("\n")
@@ -41,7 +43,9 @@ def importing(code):
 def main():
     build, mesh = sys.argv[1:3]
     geometry = gaussmap.read(mesh)
-    print(f"{len(geometry.faces):,} triangles\n\n| threads | C++, ms | Python, ms | median ratio of a turn |\n|---|---|---|---|")
+    print(
+        f"{len(geometry.faces):,} triangles\n\n| threads | C++, ms | Python, ms | median ratio of a turn |\n|---|---|---|---|"
+    )
     for threads in (1, 2):
         ours, theirs = seconds_of(threads, build, mesh, geometry)
         ratio = statistics.median(a / b for a, b in zip(ours, theirs, strict=True))
@@ -50,7 +54,9 @@ def main():
     print("\n| | s, beyond starting Python |\n|---|---|")
     print(f"| `import gaussmap` | {importing('import gaussmap') - nothing:.3f} |")
     print(f"| `import numpy` | {importing('import numpy') - nothing:.3f} |")
-    print(f"| `import gaussmap; gaussmap.curvature` | {importing('import gaussmap; gaussmap.curvature') - nothing:.3f} |")
+    print(
+        f"| `import gaussmap; gaussmap.curvature` | {importing('import gaussmap; gaussmap.curvature') - nothing:.3f} |"
+    )
 
 
 if __name__ == "__main__":

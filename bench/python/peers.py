@@ -58,7 +58,9 @@ def meshlab(method):
         for scalar in ("Mean Curvature", "Gaussian Curvature"):
             meshes = pymeshlab.MeshSet()
             meshes.add_mesh(pymeshlab.Mesh(v, f))
-            meshes.compute_curvature_principal_directions_per_vertex(method=method, curvcolormethod=scalar, autoclean=False)
+            meshes.compute_curvature_principal_directions_per_vertex(
+                method=method, curvcolormethod=scalar, autoclean=False
+            )
             scalars[scalar] = meshes.current_mesh().vertex_scalar_array()
         return 4 * scalars["Mean Curvature"] ** 2 - 2 * scalars["Gaussian Curvature"]
 
@@ -154,7 +156,9 @@ def main():
     shapes = {
         "torus 1, 0.5, 200 × 100": gaussmap.shapes.torus(around=200, across=100),
         "knot (2, 3), 600 × 40": gaussmap.shapes.knot(around=600, across=40),
-        "torus, vertices moved by a quarter of the grid": gaussmap.shapes.torus(around=200, across=100, jitter=0.25, seed=1),
+        "torus, vertices moved by a quarter of the grid": gaussmap.shapes.torus(
+            around=200, across=100, jitter=0.25, seed=1
+        ),
     }
     meshes, clouds = available(MESHES), available(CLOUDS)
     for name, shape in shapes.items():

@@ -44,7 +44,7 @@ _homes = {
 _home_of = {name: home for home, names in _homes.items() for name in names}
 _modules = ("las", "shapes")
 
-__all__ = [  # noqa: F822  (found by __getattr__)
+__all__ = [
     "Cancelled",
     "Comparison",
     "Curvature",

@@ -121,7 +121,9 @@ class Curvature(Result):
         return vertex, face
 
 
-def colors(values: Any, *, low: float | None = None, high: float | None = None, diverging: bool = False) -> npt.NDArray[np.uint8]:
+def colors(
+    values: Any, *, low: float | None = None, high: float | None = None, diverging: bool = False
+) -> npt.NDArray[np.uint8]:
     """Colours of values, (n, 3) sRGB bytes: dark violet at `low` (0), bright yellow from `high` (98th percentile) on.
 
     :param values: (n,); what is not finite is grey.
@@ -223,10 +225,21 @@ def curvature(
     given, word = _given_normals(subject, normals)
     _refuse(mesh, word, estimator, confidence)
     plain = word in ("auto", "estimate", "file")
-    asked = k is not None or degree is not None or orient is not None or not (word in ("auto", "estimate") or not isinstance(normals, str))
+    asked = (
+        k is not None
+        or degree is not None
+        or orient is not None
+        or not (word in ("auto", "estimate") or not isinstance(normals, str))
+    )
     taken = estimator or ("dirichlet" if mesh or asked or not plain else "auto")
     neighbors = 20 if k is None else whole("k", k, 3, 1000)
-    order = whole("degree", degree, 1, 4) if degree is not None else 2 if not mesh and word == "jet" and taken != "jet" else 4
+    order = (
+        whole("degree", degree, 1, 4)
+        if degree is not None
+        else 2
+        if not mesh and word == "jet" and taken != "jet"
+        else 4
+    )
     with reported(progress, "measuring curvature") as report:
         run = (thread_count(threads), report)
         if mesh:
@@ -254,7 +267,17 @@ def _refuse(mesh: bool, word: str, estimator: str | None, confidence: bool) -> N
         raise ValueError("estimator = 'corrected' is for meshes, and this is a cloud")
 
 
-def _mesh(subject: Subject, given: Floats | None, word: str, estimator: str, k: int, degree: int, tensor: bool, confidence: bool, run: Any) -> dict[str, Any]:
+def _mesh(
+    subject: Subject,
+    given: Floats | None,
+    word: str,
+    estimator: str,
+    k: int,
+    degree: int,
+    tensor: bool,
+    confidence: bool,
+    run: Any,
+) -> dict[str, Any]:
     weights = word if word in _of_meshes else "max"
     assert subject.faces is not None
     if word in _of_meshes and estimator == "regression":
@@ -306,7 +329,11 @@ class Normals(Result):
         return np.array(self.normals, dtype) if copy else np.asarray(self.normals, dtype)
 
     def _facts(self) -> list[tuple[str, str]]:
-        facts = [("", count(len(self.normals), "normal")), ("method", self.method), ("undefined", f"{self.undefined:,}")]
+        facts = [
+            ("", count(len(self.normals), "normal")),
+            ("method", self.method),
+            ("undefined", f"{self.undefined:,}"),
+        ]
         for label in ("lowered", "duplicates", "non_finite"):
             if getattr(self, label):
                 facts.append((label.replace("_", " "), f"{getattr(self, label):,}"))

@@ -56,7 +56,14 @@ class Geometry(Result):
     _rest: dict[str, Any] = field(default_factory=empty_rest)
 
     def _facts(self) -> list[tuple[str, str]]:
-        facts = [("", count(len(self.vertices), "vertex", "vertices") if self.faces is not None else count(len(self.vertices), "point"))]
+        facts = [
+            (
+                "",
+                count(len(self.vertices), "vertex", "vertices")
+                if self.faces is not None
+                else count(len(self.vertices), "point"),
+            )
+        ]
         if self.faces is not None:
             facts.append(("", count(len(self.faces), "face")))
         if len(self.vertices) and np.isfinite(self.vertices).any():
@@ -102,7 +109,12 @@ def _values_out(what: str, attributes: dict[str, AnyArray], expected: int, count
             values = values.reshape(-1)
         if values.dtype == bool:
             values = values.astype(np.uint8)
-        if values.dtype.kind not in "fiu" or values.dtype.itemsize > 8 or values.dtype == np.float16 or values.ndim != 1:
+        if (
+            values.dtype.kind not in "fiu"
+            or values.dtype.itemsize > 8
+            or values.dtype == np.float16
+            or values.ndim != 1
+        ):
             raise ValueError(f"{what}[{name!r}] has values of type {values.dtype}, which files do not hold")
         longest = int(np.diff(offsets.astype(np.int64)).max(initial=0)) if offsets is not None else 0
         count_type = counts.get(name, "uint8" if longest < 256 else "int32")
@@ -202,7 +214,9 @@ def as_geometry(x: Any, faces: Any = None) -> Geometry:
     return out
 
 
-def write(path: Path, x: Any, faces: Any = None, *, normals: Any = None, format: str | None = None, ascii: bool = False) -> None:
+def write(
+    path: Path, x: Any, faces: Any = None, *, normals: Any = None, format: str | None = None, ascii: bool = False
+) -> None:
     """Write a mesh or cloud; the extension (or `format`) decides. LAS and LAZ with the extra `las`.
 
     Written beside its place and renamed when whole: a crash leaves the old file or none. What the format has no place
@@ -237,5 +251,3 @@ def triangulate(geometry: Geometry) -> Geometry:
 def weld(geometry: Geometry) -> Geometry:
     """Vertices at exactly the same position become one (the first); triangles that lose a corner go."""
     return geometry_from({**_gaussmap.weld(record_of(geometry)), "format": geometry.format})
-
-

@@ -27,7 +27,9 @@ class Neighbors(Result):
         return [("", f"{count(rows_, 'row')} of {k}"), ("missing", f"{int((self.index < 0).sum()):,}")]
 
 
-def knn(points: Any, k: int = 20, *, queries: Any = None, threads: int | None = None, progress: Progress = None) -> Neighbors:
+def knn(
+    points: Any, k: int = 20, *, queries: Any = None, threads: int | None = None, progress: Progress = None
+) -> Neighbors:
     """The k nearest others of every point; of `queries`, the k nearest points.
 
     :param points: (n, 3) or anything that `curvature` takes; finite.
@@ -75,7 +77,15 @@ class Fans(Result):
         return [("", count(len(self.closed), "fan")), ("open", f"{int((~self.closed).sum()):,}")]
 
 
-def fans(points: Any, *, normals: Any = None, neighbors: Any = None, k: int = 20, threads: int | None = None, progress: Progress = None) -> Fans:
+def fans(
+    points: Any,
+    *,
+    normals: Any = None,
+    neighbors: Any = None,
+    k: int = 20,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Fans:
     """The Delaunay triangles incident on each point among its neighbours projected along its normal.
 
     :param points: (n, 3), finite, or anything that `curvature` takes.

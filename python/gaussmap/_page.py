@@ -19,7 +19,9 @@ class Page(str):
     """The text of an HTML file; a notebook shows the page itself."""
 
     def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{html.escape(self, quote=True)}" style="width: 100%; height: 600px; border: 0"></iframe>'
+        return (
+            f'<iframe srcdoc="{html.escape(self, quote=True)}" style="width: 100%; height: 600px; border: 0"></iframe>'
+        )
 
     def __repr__(self) -> str:
         return f"<Page: {len(self):,} characters>"

@@ -56,10 +56,14 @@ def subject_of(x: Any, faces: Any = None, name: str = "vertices") -> Subject:
             return take(x)
     if hasattr(x, "__array__"):
         return Subject(rows(name, x))
-    raise ValueError(f"{name}: a {type(x).__module__}.{type(x).__qualname__} is neither an array nor a known mesh or cloud")
+    raise ValueError(
+        f"{name}: a {type(x).__module__}.{type(x).__qualname__} is neither an array nor a known mesh or cloud"
+    )
 
 
-def _made(x: Any, vertices: Any, faces: Any, normals: Any, attach: Callable[[Values, Values, AnyArray], None]) -> Subject:
+def _made(
+    x: Any, vertices: Any, faces: Any, normals: Any, attach: Callable[[Values, Values, AnyArray], None]
+) -> Subject:
     """Faces and normals that are empty are none."""
     points = rows("vertices", vertices)
     some_faces = None if faces is None or len(faces) == 0 else triangles("faces", faces, len(points))

@@ -237,7 +237,8 @@ def compare(
         interval = None
         if bound:
             ways = [
-                _gaussmap.hausdorff_bound(*pair, tolerance * diagonal, *run) for pair in ((va, fa, vb, fb), (vb, fb, va, fa))
+                _gaussmap.hausdorff_bound(*pair, tolerance * diagonal, *run)
+                for pair in ((va, fa, vb, fb), (vb, fb, va, fa))
             ]
             interval = (max(w[0] for w in ways) / diagonal, max(w[1] for w in ways) / diagonal)
     scaled = {
@@ -254,7 +255,9 @@ class Closest(NamedTuple):
     element: Ints  #: (q,), the face (of a cloud, the point) that each lies on
 
 
-def closest(x: Any, faces: Any = None, *, queries: Any, threads: int | None = None, progress: Progress = None) -> Closest:
+def closest(
+    x: Any, faces: Any = None, *, queries: Any, threads: int | None = None, progress: Progress = None
+) -> Closest:
     """The closest point of a mesh or cloud to each of the (q, 3) queries, exactly.
 
     :raises ValueError: a query or a vertex of a face that is not finite (which is named), no vertices."""

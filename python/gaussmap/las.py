@@ -123,7 +123,9 @@ def _set(las: Any, name: str, values: AnyArray) -> None:
         dimension = las.point_format.dimension_by_name(name)
         if dimension.is_standard and values.size:
             low, high = int(dimension.min), int(dimension.max)
-            beyond = ~((values >= low) & (values <= high)) if dimension.kind.name != "FloatingPoint" else np.zeros(1, bool)
+            beyond = (
+                ~((values >= low) & (values <= high)) if dimension.kind.name != "FloatingPoint" else np.zeros(1, bool)
+            )
             if beyond.any():
                 at = int(np.argmax(beyond))
                 raise ValueError(f"{name}[{at}] = {values[at]} is outside [{low}, {high}], which LAS holds there")
@@ -157,9 +159,15 @@ def write(path: str | os.PathLike[str], x: Any, *, like: Any = None, **values: A
     finite = np.isfinite(geometry.vertices).all(axis=1)
     if not finite.all():
         at = int(np.argmin(finite))
-        raise ValueError(f"vertices[{at}] = {geometry.vertices[at].tolist()} is not finite; LAS holds finite points only")
+        raise ValueError(
+            f"vertices[{at}] = {geometry.vertices[at].tolist()} is not finite; LAS holds finite points only"
+        )
     source = getattr(x, "las", None) if like is None else like
-    las = _copy(source, geometry) if source is not None and len(source.points) == len(geometry.vertices) else _new(geometry)
+    las = (
+        _copy(source, geometry)
+        if source is not None and len(source.points) == len(geometry.vertices)
+        else _new(geometry)
+    )
     given = {**geometry.attributes, **values}
     if "scalar_total_curvature" in given:
         given.pop("quality", None)  # the same for MeshLab, which reads no LAS
@@ -196,5 +204,3 @@ def _write_whole(name: str, las: Any) -> None:
         if os.path.exists(beside):
             os.unlink(beside)
         raise
-
-

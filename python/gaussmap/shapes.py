@@ -45,7 +45,6 @@ class Shape(Geometry):
 
 def _shape(make: Any, *values: Any, jitter: float, noise: float, seed: int, noise_unit: str) -> Shape:
 
-
     made = make(*values, float(jitter), float(noise), whole("seed", seed, 0, 2**63 - 1), noise_unit)
     attributes = {"exact_density": made["density"], "k1": made["k1"], "k2": made["k2"]}
     return Shape(made["vertices"], made["faces"], made["normals"], attributes)
@@ -55,51 +54,250 @@ def _grid(around: int, across: int) -> tuple[int, int]:
     return whole("around", around, 0), whole("across", across, 0)
 
 
-def sphere(*, subdivisions: int = 5, radius: float = 1.0, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def sphere(
+    *,
+    subdivisions: int = 5,
+    radius: float = 1.0,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Of radius `radius`, from an icosahedron whose faces are split in four `subdivisions` times (0 to 12)."""
-    return _shape(_gaussmap.sphere, whole("subdivisions", subdivisions, 0), float(radius), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.sphere,
+        whole("subdivisions", subdivisions, 0),
+        float(radius),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def torus(*, major: float = 1.0, minor: float = 0.5, around: int = 36, across: int = 36, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def torus(
+    *,
+    major: float = 1.0,
+    minor: float = 0.5,
+    around: int = 36,
+    across: int = 36,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Of revolution about z: `major` from the axis to the tube's centre, `minor` the tube's radius, minor < major."""
-    return _shape(_gaussmap.torus, float(major), float(minor), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.torus,
+        float(major),
+        float(minor),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def knot(*, p: int = 2, q: int = 3, major: float = 2.0, minor: float = 1.0, radius: float = 0.25, around: int = 400, across: int = 40, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def knot(
+    *,
+    p: int = 2,
+    q: int = 3,
+    major: float = 2.0,
+    minor: float = 1.0,
+    radius: float = 0.25,
+    around: int = 400,
+    across: int = 40,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Tube of radius `radius` around the (p, q) knot on a torus of radii `major` and `minor`; p and q coprime."""
-    return _shape(_gaussmap.torus_knot, whole("p", p, 0), whole("q", q, 0), float(major), float(minor), float(radius), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.torus_knot,
+        whole("p", p, 0),
+        whole("q", q, 0),
+        float(major),
+        float(minor),
+        float(radius),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def figure_eight(*, scale: float = 1.0, radius: float = 0.25, around: int = 400, across: int = 40, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def figure_eight(
+    *,
+    scale: float = 1.0,
+    radius: float = 0.25,
+    around: int = 400,
+    across: int = 40,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Tube around the figure-eight knot."""
-    return _shape(_gaussmap.figure_eight_knot, float(scale), float(radius), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.figure_eight_knot,
+        float(scale),
+        float(radius),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def ellipsoid(*, a: float = 1.0, b: float = 0.8, c: float = 0.6, subdivisions: int = 5, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def ellipsoid(
+    *,
+    a: float = 1.0,
+    b: float = 0.8,
+    c: float = 0.6,
+    subdivisions: int = 5,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """x²/a² + y²/b² + z²/c² = 1, from the subdivided icosahedron."""
-    return _shape(_gaussmap.ellipsoid, float(a), float(b), float(c), whole("subdivisions", subdivisions, 0), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.ellipsoid,
+        float(a),
+        float(b),
+        float(c),
+        whole("subdivisions", subdivisions, 0),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def bumpy(*, radius: float = 1.0, amplitude: float = 0.1, frequency: float = 4.0, subdivisions: int = 6, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def bumpy(
+    *,
+    radius: float = 1.0,
+    amplitude: float = 0.1,
+    frequency: float = 4.0,
+    subdivisions: int = 6,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Sphere with smooth bumps: radius r (1 + amplitude sin(fx) sin(fy) sin(fz)), |amplitude| < 1."""
-    return _shape(_gaussmap.bumpy_sphere, float(radius), float(amplitude), float(frequency), whole("subdivisions", subdivisions, 0), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.bumpy_sphere,
+        float(radius),
+        float(amplitude),
+        float(frequency),
+        whole("subdivisions", subdivisions, 0),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def catenoid(*, radius: float = 1.0, height: float = 2.0, around: int = 72, across: int = 36, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def catenoid(
+    *,
+    radius: float = 1.0,
+    height: float = 2.0,
+    around: int = 72,
+    across: int = 36,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """A minimal surface of neck `radius`, open at both ends; k1 = −k2."""
-    return _shape(_gaussmap.catenoid, float(radius), float(height), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.catenoid,
+        float(radius),
+        float(height),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def cylinder(*, radius: float = 1.0, height: float = 2.0, around: int = 72, across: int = 36, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def cylinder(
+    *,
+    radius: float = 1.0,
+    height: float = 2.0,
+    around: int = 72,
+    across: int = 36,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """About z, open at both ends; k = {1/r, 0}."""
-    return _shape(_gaussmap.cylinder, float(radius), float(height), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.cylinder,
+        float(radius),
+        float(height),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def plane(*, width: float = 1.0, depth: float = 1.0, around: int = 36, across: int = 36, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def plane(
+    *,
+    width: float = 1.0,
+    depth: float = 1.0,
+    around: int = 36,
+    across: int = 36,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """A rectangle in z = 0, `around` vertices along x; exactly flat."""
-    return _shape(_gaussmap.plane, float(width), float(depth), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.plane,
+        float(width),
+        float(depth),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )
 
 
-def waves(*, width: float = 1.0, depth: float = 1.0, amplitude: float = 0.05, wavelength: float = 0.5, around: int = 100, across: int = 100, jitter: float = 0.0, noise: float = 0.0, seed: int = 0, noise_unit: str = "edge") -> Shape:
+def waves(
+    *,
+    width: float = 1.0,
+    depth: float = 1.0,
+    amplitude: float = 0.05,
+    wavelength: float = 0.5,
+    around: int = 100,
+    across: int = 100,
+    jitter: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 0,
+    noise_unit: str = "edge",
+) -> Shape:
     """Height field z = amplitude cos(2πx / wavelength) cos(2πy / wavelength), open."""
-    return _shape(_gaussmap.waves, float(width), float(depth), float(amplitude), float(wavelength), *_grid(around, across), jitter=jitter, noise=noise, seed=seed, noise_unit=noise_unit)
+    return _shape(
+        _gaussmap.waves,
+        float(width),
+        float(depth),
+        float(amplitude),
+        float(wavelength),
+        *_grid(around, across),
+        jitter=jitter,
+        noise=noise,
+        seed=seed,
+        noise_unit=noise_unit,
+    )

@@ -13,7 +13,9 @@ print(result)
 assert abs(((result.density - torus.density) ** 2).mean() ** 0.5 - 0.0372) < 5e-5
 gaussmap.write("torus.ply", torus)
 command = os.path.join(os.path.dirname(sys.executable), "gaussmap")
-told = subprocess.run([command, "curvature", "torus.ply", "--truth", "exact_density"], capture_output=True, text=True, check=True)
+told = subprocess.run(
+    [command, "curvature", "torus.ply", "--truth", "exact_density"], capture_output=True, text=True, check=True
+)
 assert "0.0372" in told.stderr, told.stderr
 os.unlink("torus.ply")
 installed = {d.name.lower() for d in importlib.metadata.distributions()}

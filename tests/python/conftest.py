@@ -31,7 +31,9 @@ def program(tmp_path):
         pytest.fail(f"{PROGRAM} is not built (set GAUSSMAP to the program)")
 
     def run(*arguments):
-        done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=tmp_path, capture_output=True, timeout=120, check=False)
+        done = subprocess.run(
+            [PROGRAM, *map(str, arguments)], cwd=tmp_path, capture_output=True, timeout=120, check=False
+        )
         assert done.returncode == 0, done.stderr.decode()
         return done.stdout
 

@@ -1,4 +1,5 @@
-// The library's own numbers for the tests of the package: density and kappa of a file, as raw doubles on standard output.
+// The library's own numbers for the tests of the package: density and kappa of a file, as raw doubles on standard
+// output.
 #include <gaussmap/gaussmap.h>
 
 #include <cstdio>

@@ -20,7 +20,9 @@ def test_read_only_arrays_are_read_where_they_are():
     vertices = TORUS.vertices.copy()
     vertices.flags.writeable = False
     assert _gaussmap.addresses(_arrays.rows("vertices", vertices), TORUS.faces)[0] == vertices.ctypes.data
-    assert same_bits(gaussmap.curvature(vertices, TORUS.faces).density, gaussmap.curvature(TORUS.vertices, TORUS.faces).density)
+    assert same_bits(
+        gaussmap.curvature(vertices, TORUS.faces).density, gaussmap.curvature(TORUS.vertices, TORUS.faces).density
+    )
 
 
 def test_the_compiled_part_never_converts():
@@ -44,7 +46,11 @@ def test_results_own_their_memory():
 def test_types_and_layouts(floats, ints):
     vertices, faces = TORUS.vertices.astype(floats), TORUS.faces.astype(ints)
     plain = gaussmap.curvature(vertices.astype(np.float64), TORUS.faces)
-    for v, f in ((vertices, faces), (np.asfortranarray(vertices), np.asfortranarray(faces)), (np.repeat(vertices, 2, 0)[::2], faces)):
+    for v, f in (
+        (vertices, faces),
+        (np.asfortranarray(vertices), np.asfortranarray(faces)),
+        (np.repeat(vertices, 2, 0)[::2], faces),
+    ):
         assert same_bits(gaussmap.curvature(v, f).density, plain.density)
 
 
@@ -77,7 +83,10 @@ WRONG = [
     (lambda: gaussmap.curvature(V, degree=5), r"degree = 5 is outside \[1, 4\]"),
     (lambda: gaussmap.curvature(V, kind="mesh"), "kind = 'mesh', but there are no faces"),
     (lambda: gaussmap.curvature(V, kind="solid"), "kind = 'solid' is not one of auto, mesh, cloud"),
-    (lambda: gaussmap.curvature(V, estimator="lepski"), "estimator = 'lepski' is not one of auto, dirichlet, corrected"),
+    (
+        lambda: gaussmap.curvature(V, estimator="lepski"),
+        "estimator = 'lepski' is not one of auto, dirichlet, corrected",
+    ),
     (lambda: gaussmap.curvature(V, estimator="corrected"), "estimator = 'corrected' is for meshes"),
     (lambda: gaussmap.curvature(V, orient="mts"), "orient = 'mts' is not one of local, mst, none"),
     (lambda: gaussmap.curvature(V, estimator="dirichlet", confidence=True), "confidence"),
@@ -96,7 +105,10 @@ WRONG = [
     (lambda: gaussmap.decimate(V, [[0, 1, 2]], ratio=2), r"ratio = 2 is outside \(0, 1\]"),
     (lambda: gaussmap.decimate(V, [[0, 1, 2]], error=-1), "error = -1 is not above 0"),
     (lambda: gaussmap.decimate(V, [[0, 1, 7]], faces=1), r"faces\[0\]\[2\] = 7 is outside"),
-    (lambda: gaussmap.decimate(V, [[0, 1, 2]], faces=1, method="bset"), "method = 'bset' is not one of best, qem, edge"),
+    (
+        lambda: gaussmap.decimate(V, [[0, 1, 2]], faces=1, method="bset"),
+        "method = 'bset' is not one of best, qem, edge",
+    ),
     (lambda: gaussmap.decimate(V, [[0, 1, 2]], faces=1, objective="x"), "objective = 'x' is not one of both, rms, max"),
     (lambda: gaussmap.compare((V, [[0, 1, 9]]), V), r"a: faces\[0\]\[2\] = 9 is outside \[0, 4\)"),
     (lambda: gaussmap.compare(V, np.zeros((0, 3))), "b: "),
@@ -114,7 +126,10 @@ WRONG = [
     (lambda: gaussmap.write("x.ply", V, normals=V[:2]), "normals has 2 rows, but there are 4 vertices"),
     (lambda: gaussmap.write("x.ply", V, [[0, 1, 5]]), r"faces\[0\]\[2\] = 5 is outside \[0, 4\)"),
     (lambda: gaussmap.write("x.foo", V), "x.foo: .*extension"),
-    (lambda: gaussmap.write("x.ply", gaussmap.Geometry(V, attributes={"a": [1, 2]})), r"attributes\['a'\] has shape \(2,\)"),
+    (
+        lambda: gaussmap.write("x.ply", gaussmap.Geometry(V, attributes={"a": [1, 2]})),
+        r"attributes\['a'\] has shape \(2,\)",
+    ),
     (lambda: gaussmap.write("x.ply", gaussmap.Geometry(V, attributes={"a": list("abcd")})), "which files do not hold"),
 ]
 

@@ -58,7 +58,9 @@ def test_geometries_bring_their_normals():
 
 
 def test_a_mesh_taken_as_a_cloud():
-    assert same_bits(gaussmap.curvature(TORUS, kind="cloud", normals="estimate").density, gaussmap.curvature(TORUS.vertices).density)
+    assert same_bits(
+        gaussmap.curvature(TORUS, kind="cloud", normals="estimate").density, gaussmap.curvature(TORUS.vertices).density
+    )
 
 
 def test_principal_curvatures():

@@ -26,7 +26,9 @@ def test_curvature_of_files_is_the_commands_to_the_byte(name, data, program, tmp
     assert (tmp_path / "package.ply").read_bytes() == (tmp_path / "command.ply").read_bytes()
 
 
-@pytest.mark.parametrize("name", ["meshes/seed/cow.ply", "meshes/classic/spot.obj", "clouds/kitten.xyz", "clouds/bunny.pcd"])
+@pytest.mark.parametrize(
+    "name", ["meshes/seed/cow.ply", "meshes/classic/spot.obj", "clouds/kitten.xyz", "clouds/bunny.pcd"]
+)
 def test_curvature_of_files_is_the_librarys_to_the_bit(name, data):
     reference = PROGRAM.parent / "tests/python_density"
     if not reference.exists():
@@ -37,7 +39,12 @@ def test_curvature_of_files_is_the_librarys_to_the_bit(name, data):
     assert same_bits(np.concatenate([result.density, *kappa]), raw)
 
 
-@pytest.mark.parametrize("name", MESHES + CLOUDS + ["clouds/b9_training.ply", "clouds/fragment_000.ply", "clouds/table_scene_mug_stereo_textured.pcd"])
+@pytest.mark.parametrize(
+    "name",
+    MESHES
+    + CLOUDS
+    + ["clouds/b9_training.ply", "clouds/fragment_000.ply", "clouds/table_scene_mug_stereo_textured.pcd"],
+)
 @pytest.mark.parametrize("ending", [".ply", ".pcd", ".obj"])
 def test_reading_and_writing_is_the_commands_convert(name, ending, data, program, tmp_path):
     program("convert", data / name, "-o", "command" + ending)
@@ -55,7 +62,10 @@ def test_reading_and_writing_is_the_commands_convert(name, ending, data, program
         (("ellipsoid", "--axes", "1,0.5,0.25"), lambda: gaussmap.shapes.ellipsoid(a=1, b=0.5, c=0.25)),
         (("bumpy", "--subdivisions", 4), lambda: gaussmap.shapes.bumpy(subdivisions=4)),
         (("catenoid",), gaussmap.shapes.catenoid),
-        (("cylinder", "--noise-unit", "diagonal", "--noise", 0.01), lambda: gaussmap.shapes.cylinder(noise=0.01, noise_unit="diagonal")),
+        (
+            ("cylinder", "--noise-unit", "diagonal", "--noise", 0.01),
+            lambda: gaussmap.shapes.cylinder(noise=0.01, noise_unit="diagonal"),
+        ),
         (("plane",), gaussmap.shapes.plane),
         (("waves",), gaussmap.shapes.waves),
     ],
@@ -117,7 +127,9 @@ def test_arrays_are_written_as_they_are(tmp_path):
 
 
 def test_welding():
-    mesh = gaussmap.Geometry(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 1, 0]]), np.array([[0, 1, 2], [3, 1, 4]], np.int32))
+    mesh = gaussmap.Geometry(
+        np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0], [1, 1, 0]]), np.array([[0, 1, 2], [3, 1, 4]], np.int32)
+    )
     assert len(gaussmap.weld(mesh).vertices) == 4
 
 

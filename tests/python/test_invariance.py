@@ -14,7 +14,9 @@ scales = st.integers(-20, 20).map(lambda e: 2.0**e)  # powers of two: exact
 
 def random_mesh(seed):
     random = np.random.default_rng(seed)
-    shape = gaussmap.shapes.ellipsoid(a=1, b=random.uniform(0.4, 1), c=random.uniform(0.4, 1), subdivisions=2, jitter=0.25, seed=int(seed))
+    shape = gaussmap.shapes.ellipsoid(
+        a=1, b=random.uniform(0.4, 1), c=random.uniform(0.4, 1), subdivisions=2, jitter=0.25, seed=int(seed)
+    )
     kept = random.random(len(shape.faces)) < 0.95  # with holes
     return shape.vertices, shape.faces[kept], random
 
@@ -65,7 +67,11 @@ def test_vertices_in_another_order(seed):
     order = random.permutation(len(vertices))
     place = np.empty_like(order)
     place[order] = np.arange(len(order))
-    close(gaussmap.curvature(vertices[order], place[faces]).density, gaussmap.curvature(vertices, faces).density[order], 1e-9)
+    close(
+        gaussmap.curvature(vertices[order], place[faces]).density,
+        gaussmap.curvature(vertices, faces).density[order],
+        1e-9,
+    )
     close(gaussmap.curvature(vertices[order]).density, gaussmap.curvature(vertices).density[order], 1e-6)
 
 

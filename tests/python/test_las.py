@@ -19,7 +19,9 @@ FILES = ["urban.las", "simple.las", "1.2-with-color.las", "extrabytes.las", "tes
 def command(*arguments, cwd):
     """The command that the wheel installs."""
     program = os.path.join(os.path.dirname(sys.executable), "gaussmap")
-    return subprocess.run([program, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=200, check=False)
+    return subprocess.run(
+        [program, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, timeout=200, check=False
+    )
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -53,7 +55,9 @@ def test_curvature_of_a_cloud(data, tmp_path):
 
 def test_new_files(tmp_path):
     torus = gaussmap.shapes.torus()
-    torus.attributes["red"] = torus.attributes["green"] = torus.attributes["blue"] = np.full(len(torus.vertices), 200, np.uint8)
+    torus.attributes["red"] = torus.attributes["green"] = torus.attributes["blue"] = np.full(
+        len(torus.vertices), 200, np.uint8
+    )
     gaussmap.write(tmp_path / "torus.laz", torus)
     back = gaussmap.read(tmp_path / "torus.laz")
     np.testing.assert_allclose(back.vertices, torus.vertices, atol=1e-8)
@@ -123,7 +127,11 @@ def test_other_verbs(data, tmp_path):
 def test_the_commands_complaints(data, tmp_path):
     (tmp_path / "no.las").write_bytes(b"not a LAS file")
     done = command("info", "no.las", cwd=tmp_path)
-    assert done.returncode == 3 and done.stderr.startswith("gaussmap: no.las: not read as LAS") and done.stderr.count("\n") == 1
+    assert (
+        done.returncode == 3
+        and done.stderr.startswith("gaussmap: no.las: not read as LAS")
+        and done.stderr.count("\n") == 1
+    )
     done = command("info", "nowhere.laz", cwd=tmp_path)
     assert done.returncode == 3 and "nowhere.laz" in done.stderr
     done = command("curvature", data / "clouds/simple.las", "--k", "2", cwd=tmp_path)

@@ -53,7 +53,12 @@ for call, extra in ((lambda: gaussmap.read(sys.argv[1]), 'las'), (lambda: gaussm
 
 
 def test_importing_waits_for_nothing():
-    done = subprocess.run([sys.executable, "-c", "import gaussmap, sys; print('numpy' in sys.modules)"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", "import gaussmap, sys; print('numpy' in sys.modules)"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     assert done.stdout == "False\n"
 
 
@@ -81,7 +86,14 @@ def test_doctests(name):
 
 
 def test_there_are_doctests():
-    assert sum(len(test.examples) for name in MODULES for test in doctest.DocTestFinder().find(importlib.import_module(name))) >= 8
+    assert (
+        sum(
+            len(test.examples)
+            for name in MODULES
+            for test in doctest.DocTestFinder().find(importlib.import_module(name))
+        )
+        >= 8
+    )
 
 
 def blocks(page):
@@ -100,7 +112,9 @@ def test_the_documentation_runs(page, tmp_path, monkeypatch, data):
     assert codes
     names = {}
     for code in codes:
-        expected = [line.split("  # ", 1)[1] for line in code.splitlines() if line.startswith("print(") and "  # " in line]
+        expected = [
+            line.split("  # ", 1)[1] for line in code.splitlines() if line.startswith("print(") and "  # " in line
+        ]
         told = io.StringIO()
         with contextlib.redirect_stdout(told):
             exec(compile(code, page, "exec"), names)
