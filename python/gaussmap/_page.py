@@ -29,7 +29,8 @@ class Page(str):
 
 def _of_curvature(result: Curvature) -> list[tuple[str, Any, bool]]:
     vertex, face = result.values()
-    fields = [("density", result.density, False), *((name, values, False) for name, values in vertex.items())]
+    fields: list[tuple[str, Any, bool]] = [("density", result.density, False)]
+    fields += [(name, values, False) for name, values in vertex.items()]
     if result.kind == "mesh":
         fields += [("kappa", result.kappa, True), *((name, values, True) for name, values in face.items())]
     return fields
