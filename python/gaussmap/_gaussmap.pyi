@@ -1,5 +1,6 @@
 """The compiled part of gaussmap; import gaussmap instead."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy
@@ -68,8 +69,12 @@ def read(path: str, format: str, threads: int, progress: object | None) -> dict[
 
 def write(path: str, geometry: dict[str, Any], format: str, ascii: bool) -> None: ...
 
+def write_file(path: str, text: str) -> None: ...
+
 def triangulate(geometry: dict[str, Any]) -> dict[str, Any]: ...
 
 def weld(geometry: dict[str, Any]) -> dict[str, Any]: ...
 
 def known_extensions() -> str: ...
+
+def page_html(scenes: Sequence[tuple[str, Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], Annotated[NDArray[numpy.int32], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None, Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)] | None, Sequence[tuple[str, Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], bool]]]], title: str, threads: int, progress: object | None) -> str: ...
