@@ -2,12 +2,14 @@
 #
 #   make demo [IN=file]  install what is missing, build, measure a shape made on the spot (and IN)
 #   make test            everything that is tested: C++, command line, install, layout; Release and sanitizers
+#   make test-python     the Python package alone: wheel, clean environment, tests, types, documentation
 #   make test-browser    the viewer in chromium (part of make test); screenshots in build/browser
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
+#   make bench-python    the package against the library, and against peers in Python
 #   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
 #   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
@@ -21,6 +23,7 @@ PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
 THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling test_decimate
 PROGRAM := build/release/gaussmap
+PYTHON := build/python/bin/python
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
 # Debian packages that are listed but not installed, nor there as a program of that name (npm of another source); sudo
@@ -29,7 +32,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-browser test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate bench-real paper fuzz clean setup release
+.PHONY: demo test test-release test-cli test-browser test-asan test-tsan test-python python-wheel python-stubs lint bench bench-accuracy bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -51,7 +54,7 @@ demo: setup
 	  $(PROGRAM) curvature "$(IN)" --color -o "$$name.ply" -o "$$name.png" -o "$$name.html"; fi
 	@echo; echo "Written (the HTML opens in any browser, the PLY in MeshLab and CloudCompare):"; ls -1 out/*-curvature.* out/picture.png | sed 's/^/  /'
 
-test: test-release test-cli test-browser test-asan test-tsan
+test: test-release test-cli test-browser test-python test-asan test-tsan
 	@echo; echo "All suites passed."
 
 test-release: release
@@ -78,6 +81,25 @@ test-tsan: setup
 	@cmake --preset tsan >/dev/null
 	@cmake --build --preset tsan --target $(THREADED)
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
+
+# The wheel, as `pip install .` makes it; its environment has what the tests need besides. The compiler is called as the
+# other builds call it, so that ccache knows its work.
+python-wheel: setup
+	@[ -x $(PYTHON) ] || /usr/bin/python3 -m venv build/python
+	@cmp -s tests/python/requirements.txt build/python/installed.txt || { $(PYTHON) -m pip install -q -r tests/python/requirements.txt && \
+	  cp tests/python/requirements.txt build/python/installed.txt; }
+	@rm -rf build/python/dist
+	CXX=c++ $(PYTHON) -m pip wheel -q . --no-deps -w build/python/dist
+	$(PYTHON) -m pip install -q --force-reinstall --no-deps build/python/dist/*.whl
+	@rm -rf build/python/clean && $(PYTHON) -m venv build/python/clean && build/python/clean/bin/pip install -q build/python/dist/*.whl
+	$(PYTHON) -m auditwheel show build/python/dist/*.whl
+	cd build/python && clean/bin/python $(CURDIR)/tests/python/clean.py
+
+test-python: release python-wheel
+	GAUSSMAP=$(PROGRAM) $(PYTHON) -m pytest -q -n 2 -p no:cacheprovider -rs tests/python
+
+python-stubs: python-wheel
+	$(PYTHON) -m nanobind.stubgen -m gaussmap._gaussmap -o python/gaussmap/_gaussmap.pyi
 
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
@@ -109,6 +131,11 @@ bench-decimate: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_decimate
 	/usr/bin/python3 bench/decimate.py build/bench $(IN)
+
+bench-python: release python-wheel
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_python_call
+	/usr/bin/python3 bench/python.py build/bench build/python/dist
 
 bench-real: packages = packages.txt bench/packages.txt
 bench-real: release
