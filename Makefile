@@ -7,6 +7,8 @@
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
+#   make wasm            build/wasm/gaussmap.html: the page that measures in the browser
+#   make bench-browser   that page against the program on one thread (IN="a.ply b.ply": on these)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -25,7 +27,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
+.PHONY: demo test test-release test-cli test-asan test-tsan wasm test-wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -47,7 +49,7 @@ demo: setup
 	  $(PROGRAM) curvature "$(IN)" --color -o "$$name.ply" -o "$$name.png"; fi
 	@echo; echo "Written (the PLY open in MeshLab and CloudCompare):"; ls -1 out/*-curvature.* out/picture.png | sed 's/^/  /'
 
-test: test-release test-cli test-asan test-tsan
+test: test-release test-cli test-asan test-tsan test-wasm
 	@echo; echo "All suites passed."
 
 test-release: release
@@ -67,6 +69,18 @@ test-tsan: setup
 	@cmake --preset tsan >/dev/null
 	@cmake --build --preset tsan --target $(THREADED)
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
+
+wasm: packages = packages.txt wasm/packages.txt
+wasm: setup
+	@cmake --preset wasm >/dev/null
+	@cmake --build --preset wasm
+
+# The page in a browser, against the program.
+test-wasm: release wasm
+	GAUSSMAP=$(PROGRAM) node --test tests/browser/compute.test.mjs
+
+bench-browser: release wasm
+	GAUSSMAP=$(PROGRAM) node bench/browser/speed.mjs $(IN)
 
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
