@@ -2,6 +2,7 @@
 #
 #   make demo [IN=file]  install what is missing, build, measure a shape made on the spot (and IN)
 #   make test            everything that is tested: C++, command line, install, layout; Release and sanitizers
+#   make test-browser    the viewer and the page of make wasm in chromium (part of make test); screenshots in build/browser
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
@@ -22,12 +23,12 @@ THREADED := test_types test_curvature test_cloud test_normals test_neighbors tes
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
-# Debian packages that are listed but not installed; sudo where we are not root.
+# Debian packages that are listed but not installed, nor there as a program of that name (node and npm of another source); sudo where we are not root.
 packages = packages.txt
-missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || echo "$$p"; done)
+missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-asan test-tsan wasm test-wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
+.PHONY: demo test test-release test-cli test-browser test-asan test-tsan wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -43,13 +44,13 @@ demo: setup
 	@cmake --build --preset release --target gaussmap_cli example_picture
 	@mkdir -p out
 	$(PROGRAM) shape bumpy --subdivisions 6 --jitter 0.2 -o out/bumpy.ply
-	$(PROGRAM) curvature out/bumpy.ply --truth exact_density --color -o out/bumpy-curvature.ply -o out/bumpy-curvature.png
+	$(PROGRAM) curvature out/bumpy.ply --truth exact_density --color -o out/bumpy-curvature.ply -o out/bumpy-curvature.png -o out/bumpy-curvature.html
 	build/release/examples/example_picture out/picture.png
 	@if [ -n "$(IN)" ]; then name="out/$$(basename "$(IN)" | sed 's/\.[^.]*$$//')-curvature"; set -x; \
-	  $(PROGRAM) curvature "$(IN)" --color -o "$$name.ply" -o "$$name.png"; fi
-	@echo; echo "Written (the PLY open in MeshLab and CloudCompare):"; ls -1 out/*-curvature.* out/picture.png | sed 's/^/  /'
+	  $(PROGRAM) curvature "$(IN)" --color -o "$$name.ply" -o "$$name.png" -o "$$name.html"; fi
+	@echo; echo "Written (the HTML opens in any browser, the PLY in MeshLab and CloudCompare):"; ls -1 out/*-curvature.* out/picture.png | sed 's/^/  /'
 
-test: test-release test-cli test-asan test-tsan test-wasm
+test: test-release test-cli test-browser test-asan test-tsan
 	@echo; echo "All suites passed."
 
 test-release: release
@@ -57,6 +58,13 @@ test-release: release
 
 test-cli: release
 	GAUSSMAP=$(PROGRAM) $(PYTEST) tests/cli
+
+# The viewer is built with the program; node tells when no test ran.
+test-browser: release wasm
+	cd viewer && npm run --silent check
+	@rm -rf build/browser; mkdir -p build/browser
+	GAUSSMAP=$(PROGRAM) node --test tests/browser/ | tee build/browser/report.tap
+	@grep -q '^# pass [1-9]' build/browser/report.tap || { echo "no browser test ran"; exit 1; }
 
 test-asan: setup
 	@cmake --preset asan >/dev/null
@@ -74,10 +82,6 @@ wasm: packages = packages.txt wasm/packages.txt
 wasm: setup
 	@cmake --preset wasm >/dev/null
 	@cmake --build --preset wasm
-
-# The page in a browser, against the program.
-test-wasm: release wasm
-	GAUSSMAP=$(PROGRAM) node --test tests/browser/compute.test.mjs
 
 bench-browser: release wasm
 	GAUSSMAP=$(PROGRAM) node bench/browser/speed.mjs $(IN)

@@ -120,7 +120,12 @@ CommandLine::CommandLine(std::string usage, std::string about, std::string examp
 
 void CommandLine::input(std::string& value, const std::string& name, const std::string& about) {
     app_.add_option(name, value)->group("");
-    inputs_.push_back({name, about, &value});
+    inputs_.push_back({name, about, &value, true});
+}
+
+void CommandLine::optional_input(std::string& value, const std::string& name, const std::string& about) {
+    input(value, name, about);
+    inputs_.back().required = false;
 }
 
 CLI::Option* CommandLine::flag(const std::string& names, bool& value, const std::string& about) {
@@ -168,7 +173,7 @@ bool CommandLine::parse(int argc, char** argv) {
     refuse_unknown();
     const std::string verb = argv[1];
     for (const Input& input : inputs_)
-        if (input.value->empty())
+        if (input.required && input.value->empty())
             throw Failure(Exit::wrong_usage,
                           fmt::format("{}: {} is missing; write: gaussmap {}", verb, input.name, usage_));
     if (required_outputs_ && required_outputs_->empty())

@@ -32,6 +32,8 @@ class CommandLine {
 
     /// A positional argument, required; the first one named is the first one typed.
     void input(std::string& value, const std::string& name, const std::string& about);
+    /// One more that may be left out.
+    void optional_input(std::string& value, const std::string& name, const std::string& about);
     /// Options of the group that `group` last began. `value_name` is what the help calls the value: "N".
     template <class Value>
     CLI::Option* option(const std::string& names, Value& value, const std::string& value_name,
@@ -65,6 +67,7 @@ class CommandLine {
     struct Input {
         std::string name, about;
         const std::string* value;
+        bool required;
     };
     std::vector<Input> inputs_;
     const std::vector<std::string>* required_outputs_ = nullptr;

@@ -183,7 +183,7 @@ void CurvatureOptions::declare(CommandLine& line) {
     line.group("Report");
     line.option("--truth", truth, "PROPERTY",
                 "Compare the densities with this property of the input's vertices, and report the errors");
-    outputs.pictures = true;
+    outputs.pictures = outputs.pages = true;
     outputs.declare(line, false);
     line.flag("--color", color,
               "Add red, green, blue: dark at density 0, bright from the 98th percentile on, grey where undefined");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "gaussmap/page.h"
 #include "report.h"
 
 namespace cli {
@@ -55,6 +56,12 @@ void check_folder(const std::string& path) {
         throw Failure(Exit::failed, fmt::format("{}: no permission to write into the folder '{}'", path, name));
 }
 
+bool ends_in(const std::string& path, const std::string& extension) {
+    std::string end = path.substr(path.size() - std::min(extension.size(), path.size()));
+    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return end == extension;
+}
+
 /// What of the geometry the format has no place for.
 std::vector<std::string> lost(const gaussmap::Geometry& geometry, Format format) {
     std::vector<std::string> out;
@@ -75,10 +82,10 @@ std::vector<std::string> lost(const gaussmap::Geometry& geometry, Format format)
 void Outputs::declare(CommandLine& line, bool required) {
     line.group("Output");
     const std::string formats_of_geometry = ".ply .obj .off .stl .xyz .pcd";
-    line.outputs(paths, required,
-                 !geometries ? ".png"
-                 : pictures  ? formats_of_geometry + " .png"
-                             : formats_of_geometry);
+    std::string known = geometries ? formats_of_geometry : "";
+    for (const auto& [taken, extension] : {std::pair(pictures, ".png"), std::pair(pages, ".html")})
+        if (taken) known.append(known.empty() ? "" : " ").append(extension);
+    line.outputs(paths, required, known);
     if (!geometries) return;
     line.option("--format", format_name, "F", "Format of -o -: ply, obj, off, stl, xyz or pcd (default: ply)")
         ->check(one_of(format_names));
@@ -100,12 +107,16 @@ void Outputs::check(const CommandLine& line) const {
                 throw Failure(Exit::wrong_usage, "-o - and --json both want standard output; write to a file instead");
             continue;
         }
-        if (!is_picture(*path) && (!geometries || format(*path) == Format::detect)) {
-            std::string known = geometries ? gaussmap::known_extensions() : "";
-            if (pictures) known += known.empty() ? ".png" : ", .png";
-            throw Failure(Exit::wrong_usage, fmt::format("{}: unknown extension of an output; the known {} {}", *path,
-                                                         geometries ? "ones are" : "one is", known));
+        if (is_geometry(*path) && (!geometries || format(*path) == Format::detect)) {
+            std::vector<std::string> known;
+            if (geometries) known.push_back(gaussmap::known_extensions());
+            if (pictures) known.emplace_back(".png");
+            if (pages) known.emplace_back(".html");
+            throw Failure(Exit::wrong_usage, fmt::format("{}: unknown extension of an output; the known ones are {}",
+                                                         *path, fmt::join(known, ", ")));
         }
+        if (const std::string obstacle = gaussmap::page_obstacle(); is_page(*path) && !obstacle.empty())
+            throw Failure(Exit::failed, fmt::format("{}: this gaussmap was {}", *path, obstacle));
         check_folder(*path);
     }
     if (geometries && line.given("--format") && std::find(paths.begin(), paths.end(), "-") == paths.end())
@@ -115,35 +126,41 @@ void Outputs::check(const CommandLine& line) const {
 void Outputs::check_fit(const gaussmap::Geometry& geometry) const {
     if (!geometry.faces.empty()) return;
     for (const std::string& path : paths)
-        if (format(path) == Format::stl)
+        if (is_geometry(path) && format(path) == Format::stl)
             throw Failure(Exit::wrong_usage,
                           path + ": STL holds nothing but triangles, and there are none; write .ply");
 }
 
 bool Outputs::is_picture(const std::string& path) const {
     if (path == "-") return !geometries;
-    std::string end = path.substr(path.size() - std::min<std::size_t>(4, path.size()));
-    for (char& c : end) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return pictures && end == ".png";
+    return pictures && ends_in(path, ".png");
+}
+
+bool Outputs::is_page(const std::string& path) const {
+    return pages && ends_in(path, ".html");
 }
 
 bool Outputs::any_picture() const {
     return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_picture(path); });
 }
 
+bool Outputs::any_page() const {
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_page(path); });
+}
+
 bool Outputs::any_geometry() const {
-    return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return !is_picture(path); });
+    return std::any_of(paths.begin(), paths.end(), [&](const std::string& path) { return is_geometry(path); });
 }
 
 void Outputs::write(const gaussmap::Geometry& geometry) const {
     for (const std::string& path : paths)
-        if (!is_picture(path)) gaussmap::write(path, geometry, {format(path), ascii, false});
+        if (is_geometry(path)) gaussmap::write(path, geometry, {format(path), ascii, false});
 }
 
 std::vector<std::string> Outputs::losses(const gaussmap::Geometry& geometry) const {
     std::vector<std::string> out;
     for (const std::string& path : paths) {
-        if (is_picture(path)) continue;
+        if (!is_geometry(path)) continue;
         const std::vector<std::string> what = lost(geometry, format(path));
         if (!what.empty())
             out.push_back(fmt::format("{} has no place for: {}; .ply has", path == "-" ? "the output" : path,

@@ -19,19 +19,23 @@ struct Outputs {
     bool ascii = false;
     bool geometries = true;  ///< the verb writes meshes and clouds
     bool pictures = false;   ///< the verb draws .png
+    bool pages = false;      ///< the verb makes .html
 
     /// Declare -o, and --format and --ascii where they mean something.
     void declare(CommandLine& line, bool required);
     /// Everything that can be wrong before the work: an unknown extension, a folder that is not there, a name twice,
-    /// standard output wanted twice. \throw Failure
+    /// standard output wanted twice, a page where the program was built without the viewer. \throw Failure
     void check(const CommandLine& line) const;
     /// \throw Failure where a format cannot hold such a geometry at all: it takes faces alone, and there are none.
     void check_fit(const gaussmap::Geometry& geometry) const;
     /// Is this output a picture? Standard output is one for a verb that only draws.
     bool is_picture(const std::string& path) const;
+    bool is_page(const std::string& path) const;
+    bool is_geometry(const std::string& path) const { return !is_picture(path) && !is_page(path); }
     bool any_picture() const;
+    bool any_page() const;
     bool any_geometry() const;
-    /// Write all that are no pictures. \throw std::runtime_error with the system's reason
+    /// Write all that are neither pictures nor pages. \throw std::runtime_error with the system's reason
     void write(const gaussmap::Geometry& geometry) const;
     /// One sentence for each output that cannot hold all of the geometry.
     std::vector<std::string> losses(const gaussmap::Geometry& geometry) const;

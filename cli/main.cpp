@@ -27,7 +27,7 @@ constexpr Verb verbs[] = {
     {"compare", "A B", "distances between two meshes or clouds, both ways", compare},
     {"sample", "MESH -o OUT", "points on a mesh: Poisson-disk, nonuniform, random", sample},
     {"shape", "NAME -o OUT", "analytic surfaces with exact normals and curvature", shape},
-    {"view", "IN -o OUT.png", "a picture of the curvature, or of another value", view},
+    {"view", "IN [IN2] -o OUT", "a page or a picture of the curvature, or other values", view},
     {"convert", "IN -o OUT", "another format; weld, triangulate", convert},
     {"info", "IN", "what a file holds, and what is wrong with it", info},
 };
@@ -39,7 +39,7 @@ std::string help() {
         "  gaussmap curvature bunny.ply -o out.ply --color\n"
         "                                                 and write it, to look at\n"
         "  gaussmap curvature scan.pcd -o scan.ply --json for a script\n"
-        "  gaussmap view bunny.ply -o bunny.png           a picture of it\n"
+        "  gaussmap view bunny.ply -o bunny.html          a page to look at it\n"
         "  gaussmap shape torus -o torus.ply              a surface to try it on\n"
         "  gaussmap info broken.stl                       what is in a file\n"
         "\n"
@@ -49,7 +49,7 @@ std::string help() {
         "(a point of no face, too few neighbours) it is NaN, and counted.\n"
         "\n"
         "Verbs:\n";
-    for (const Verb& verb : verbs) page += fmt::format("  {:<10}{:<14}  {}\n", verb.name, verb.usage, verb.about);
+    for (const Verb& verb : verbs) page += fmt::format("  {:<10}{:<15}  {}\n", verb.name, verb.usage, verb.about);
     page += fmt::format(
         "\n"
         "gaussmap VERB --help   examples and options of a verb\n"

@@ -6,6 +6,7 @@
 #include "colormap.h"
 #include "curvature_plan.h"
 #include "curvature_report.h"
+#include "pages.h"
 #include "pictures.h"
 #include "verbs.h"
 
@@ -31,6 +32,7 @@ constexpr const char* examples =
     "gaussmap curvature bunny.ply                       measure and report\n"
     "gaussmap curvature bunny.ply -o out.ply --color    and write it, to look at\n"
     "gaussmap curvature bunny.ply -o bunny.png          a picture of it\n"
+    "gaussmap curvature a.ply --tensor -o a.html        a page, k1 and k2 too\n"
     "gaussmap curvature scan.pcd --k 30 -o scan.ply     a cloud, fans of 30\n"
     "gaussmap curvature a.obj -o a.ply -o a.xyz --json  two files, a JSON report\n"
     "gaussmap curvature a.ply --tensor -o b.ply         k1, k2, directions\n"
@@ -155,6 +157,17 @@ void attach(Geometry& geometry, const Measured& measured, const CurvatureOptions
         set_property(geometry.vertex_properties, std::move(property));
 }
 
+/// What was measured as PLY files hold it, and the truth beside it.
+void write_pages(const Geometry& geometry, const Measured& measured, const CurvatureOptions& o,
+                 const CurvaturePlan& plan, const Common& common) {
+    gaussmap::PageScene scene = page_scene(o.input, geometry, plan.mesh, measured.normals);
+    add_measured(scene, "density", measured.density);
+    add_properties(scene, vertex_results(measured, o), false);
+    if (plan.mesh) add_measured(scene, "kappa", measured.kappa, true);
+    if (!o.truth.empty()) add_properties(scene, {*geometry.vertex_property(o.truth)}, false);
+    write_pages(o.outputs, {scene}, {}, common);
+}
+
 std::string hint_of_cuts(const Json& report) {
     return fmt::format("{} the position of another: the surface is cut there; gaussmap convert --weld joins it",
                        count(report["duplicates"].get<std::size_t>(), "vertex repeats", "vertices repeat"));
@@ -193,6 +206,7 @@ void curvature(int argc, char** argv) {
         concerning(o.input, [&] {
             draw_pictures(o.outputs, geometry, plan.mesh, measured.density, measured.normals, {}, line.common);
         });
+    if (o.outputs.any_page()) concerning(o.input, [&] { write_pages(geometry, measured, o, plan, line.common); });
     if (o.outputs.any_geometry()) {
         attach(geometry, measured, o, plan, notes);
         o.outputs.write(geometry);

@@ -1,4 +1,4 @@
-// gaussmap view: a picture of the curvature, or of any other value the file has.
+// gaussmap view: a page or a picture of the curvature, or of any other value the file has.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "gaussmap/curvature.h"
+#include "pages.h"
 #include "pictures.h"
 #include "report.h"
 #include "verbs.h"
@@ -17,22 +18,26 @@ namespace {
 using gaussmap::Geometry;
 
 struct Options {
-    std::string input, as = "auto", field, size = "1600x1200", from, up, range;
+    std::string input, second, as = "auto", field, size = "1600x1200", from, up, range;
     gaussmap::PictureOptions picture;
     Outputs outputs;
 };
 
 constexpr const char* about =
-    "Draws a mesh or a cloud, coloured by its total curvature or by a property of its vertices, as a PNG. "
-    "It needs no display. The same input gives the same bytes.\n\n"
+    "Shows a mesh or a cloud, coloured by its total curvature or by a property of its vertices: as a page (.html), "
+    "or as a picture (.png) drawn without a display. A page is one file that needs no network: turn it, choose "
+    "values, colours and range, point at it for numbers. Two inputs stand side by side on a page, and turn together. "
+    "The same input gives the same bytes.\n\n"
     "Colours begin at 0 and end at the 98th percentile; what lies beyond has the last colour, and the legend a point "
     "there. Curvatures that have a sign (k1, k2, mean, gaussian, shape_index) are blue below 0 and red above, as far "
     "as "
     "either way. A plane is drawn as a plane, whatever its rounding noise. What is undefined is grey, and counted.\n\n"
-    "Without --from, the picture looks along the shortest side, a little from the right and from above.";
+    "Without --from, one looks along the shortest side, a little from the right and from above.";
 
 constexpr const char* examples =
-    "gaussmap view bunny.ply -o bunny.png               its total curvature\n"
+    "gaussmap view bunny.ply -o bunny.html              a page to look at it\n"
+    "gaussmap view a.ply b.ply -o both.html             two side by side\n"
+    "gaussmap view bunny.ply -o bunny.png               a picture\n"
     "gaussmap view scan.pcd --views 4 -o scan.png       a contact sheet\n"
     "gaussmap view part.stl --from 1,-2,1 -o part.png   seen from there\n"
     "gaussmap view torus.ply --field k1 -o torus.png    another value of the file";
@@ -90,6 +95,7 @@ CLI::Validator one_or_four() {
 
 void declare(CommandLine& line, Options& o) {
     line.input(o.input, "IN", "A mesh or a cloud: " + gaussmap::known_extensions() + "; - is standard input");
+    line.optional_input(o.second, "IN2", "Another, to compare with on a page");
     line.group("What");
     line.option("--field", o.field, "PROPERTY",
                 "A property of the vertices (default: the total curvature, measured as gaussmap curvature does)");
@@ -108,7 +114,7 @@ void declare(CommandLine& line, Options& o) {
     line.option("--up", o.up, "X,Y,Z", "The upward direction (default: z, or y for what is shortest along z)")
         ->check(numbers(3, "0,0,1"));
     o.outputs.geometries = false;
-    o.outputs.pictures = true;
+    o.outputs.pictures = o.outputs.pages = true;
     o.outputs.declare(line, true);
 }
 
@@ -118,8 +124,12 @@ bool parallel(const std::array<double, 3>& a, const std::array<double, 3>& b) {
     return sine <= 1e-11 * squared(a[0], a[1], a[2]) * squared(b[0], b[1], b[2]);
 }
 
-/// The options that are texts. \throw Failure (wrong usage)
+/// The options that are texts, and what does not go together. \throw Failure (wrong usage)
 void interpret(Options& o) {
+    if (!o.second.empty() && o.outputs.any_picture())
+        throw Failure(Exit::wrong_usage, "two inputs stand side by side on a page; a .png shows one");
+    if (o.input == "-" && o.second == "-")
+        throw Failure(Exit::wrong_usage, "both inputs are standard input; name a file for one");
     const auto sides = size_of(o.size).value();
     o.picture.width = sides[0], o.picture.height = sides[1];
     const auto direction = [](const std::string& text, const char* name, std::array<double, 3>& out) {
@@ -145,11 +155,12 @@ void interpret(Options& o) {
 struct Values {
     std::string name;
     std::vector<double> values, normals;
+    std::vector<double> kappa;  ///< of the faces of a mesh that was measured
 };
 
 /// Sets the legend of a property: densities and curvatures as `shape` and `curvature` write them have a unit.
-Values property_values(const Geometry& geometry, Options& o) {
-    const gaussmap::Property& property = vertex_property(geometry, o.field, o.input, "to draw");
+Values property_values(const Geometry& geometry, const std::string& path, Options& o) {
+    const gaussmap::Property& property = vertex_property(geometry, o.field, path, "to draw");
     o.picture.label = o.field;
     const auto is_one_of = [&](const std::vector<std::string>& names) {
         return std::find(names.begin(), names.end(), o.field) != names.end();
@@ -159,7 +170,7 @@ Values property_values(const Geometry& geometry, Options& o) {
     o.picture.unit = o.picture.density || is_one_of({"gaussian", "density_error"}) ? "1/unit²"
                      : is_one_of({"k1", "k2", "mean", "curvedness"})               ? "1/unit"
                                                                                    : "";
-    return {o.field, property.as_double(), has_normals(geometry) ? geometry.normals : std::vector<double>()};
+    return {o.field, property.as_double(), has_normals(geometry) ? geometry.normals : std::vector<double>(), {}};
 }
 
 Values measured_values(const Geometry& geometry, bool mesh, const Common& common) {
@@ -170,63 +181,116 @@ Values measured_values(const Geometry& geometry, bool mesh, const Common& common
         gaussmap::MeshCurvatureOptions options;
         options.run = progress.run(common.threads);
         auto result = gaussmap::mesh_curvature(geometry.vertices, geometry.faces, normals, options);
-        return {"total curvature", std::move(result.density), std::move(result.normals)};
+        return {"total curvature", std::move(result.density), std::move(result.normals), std::move(result.kappa)};
     }
     gaussmap::CloudCurvatureOptions options;
     options.run = progress.run(common.threads);
     auto result = gaussmap::cloud_curvature(geometry.vertices, normals, options);
-    return {"total curvature", std::move(result.density), std::move(result.normals)};
+    return {"total curvature", std::move(result.density), std::move(result.normals), {}};
+}
+
+/// An input and what is shown on it.
+struct Shown {
+    std::string path;
+    Geometry geometry;
+    bool mesh = false;
+    Values values;
+};
+
+Values values_of(const Shown& shown, Options& o, const Common& common) {
+    if (!o.field.empty()) return property_values(shown.geometry, shown.path, o);
+    return concerning(shown.path, [&] { return measured_values(shown.geometry, shown.mesh, common); });
+}
+
+void write_pages(const std::vector<Shown>& inputs, const Options& o, const Common& common) {
+    std::vector<gaussmap::PageScene> scenes;
+    for (const Shown& shown : inputs)
+        concerning(shown.path, [&] {
+            scenes.push_back(page_scene(shown.path, shown.geometry, shown.mesh, shown.values.normals));
+            gaussmap::PageScene& scene = scenes.back();
+            if (o.field.empty()) add_measured(scene, "density", shown.values.values);
+            if (!shown.values.kappa.empty()) add_measured(scene, "kappa", shown.values.kappa, true);
+            add_properties(scene, shown.geometry.vertex_properties, false);
+            if (shown.mesh && shown.geometry.polygons.empty())
+                add_properties(scene, shown.geometry.face_properties, true);
+        });
+    gaussmap::PageOptions options;
+    options.field = o.field;
+    options.low = o.picture.low, options.high = o.picture.high;
+    options.direction = o.picture.direction, options.up = o.picture.up;
+    write_pages(o.outputs, scenes, options, common);
 }
 
 Table table_of(const Json& report) {
     Table table;
     table.add("field", report["field"].get<std::string>());
-    table.add("colours", fmt::format("from {} to {}", number(report["low"]), number(report["high"])));
     table.add("undefined", count(report["undefined"].get<std::size_t>(), "value", "values"));
-    table.add("picture", fmt::format("{} × {} pixels, {}", report["width"].get<int>(), report["height"].get<int>(),
-                                     count(report["views"].get<std::size_t>(), "view", "views")));
+    if (!report["width"].is_null()) {
+        table.add("colours", fmt::format("from {} to {}", number(report["low"]), number(report["high"])));
+        table.add("picture", fmt::format("{} × {} pixels, {}", report["width"].get<int>(), report["height"].get<int>(),
+                                         count(report["views"].get<std::size_t>(), "view", "views")));
+    }
     add_ending(table, report);
     return table;
+}
+
+/// What is known of an input.
+Json report_of(const Shown& shown) {
+    Json report = {{"kind", shown.mesh ? "mesh" : "cloud"}, {"file", shown.path}};
+    report["vertices"] = shown.geometry.vertex_count();
+    report["faces"] = shown.geometry.face_count();
+    report["field"] = shown.values.name;
+    report["undefined"] = std::count_if(shown.values.values.begin(), shown.values.values.end(),
+                                        [](double value) { return !std::isfinite(value); });
+    return report;
 }
 
 }  // namespace
 
 void view(int argc, char** argv) {
     Options o;
-    CommandLine line("view IN -o OUT.png… [options]", about, examples);
+    CommandLine line("view IN [IN2] -o OUT… [options]", about, examples);
     declare(line, o);
     if (!line.parse(argc, argv)) return;
     o.outputs.check(line);
     interpret(o);
 
     Stopwatch watch;
-    const Geometry geometry = read_input(o.input, line.common);
-    const double seconds_read = watch.lap();
-    const bool mesh = taken_as_mesh(o.as, geometry, o.input);
-    const Values drawn = o.field.empty()
-                             ? concerning(o.input, [&] { return measured_values(geometry, mesh, line.common); })
-                             : property_values(geometry, o);
-    const double seconds_values = watch.lap();
-    const gaussmap::Picture picture = concerning(o.input, [&] {
-        return draw_pictures(o.outputs, geometry, mesh, drawn.values, drawn.normals, o.picture, line.common);
-    });
-
-    Json report = {{"kind", mesh ? "mesh" : "cloud"}, {"file", o.input}};
-    report["vertices"] = geometry.vertex_count();
-    report["faces"] = geometry.face_count();
-    report["field"] = drawn.name;
-    report["low"] = picture.low;
-    report["high"] = picture.high;
-    report["undefined"] = picture.undefined;
-    report["width"] = picture.width;
-    report["height"] = picture.height;
-    report["views"] = o.picture.views;
+    double seconds_read = 0, seconds_values = 0;
+    std::vector<Shown> inputs;
+    for (const std::string& path : {o.input, o.second}) {
+        if (path.empty()) continue;
+        Shown shown = {path, read_input(path, line.common), false, {}};
+        seconds_read += watch.lap();
+        shown.mesh = taken_as_mesh(o.as, shown.geometry, path);
+        shown.values = values_of(shown, o, line.common);
+        seconds_values += watch.lap();
+        inputs.push_back(std::move(shown));
+    }
+    const Shown& first = inputs.front();
+    Json report = report_of(first);
+    if (inputs.size() > 1) report["second"] = report_of(inputs.back());
+    for (const char* key : {"low", "high", "width", "height", "views"}) report[key] = Json();
+    if (o.outputs.any_picture()) {
+        const gaussmap::Picture picture = concerning(o.input, [&] {
+            return draw_pictures(o.outputs, first.geometry, first.mesh, first.values.values, first.values.normals,
+                                 o.picture, line.common);
+        });
+        report["low"] = picture.low;
+        report["high"] = picture.high;
+        report["width"] = picture.width;
+        report["height"] = picture.height;
+        report["views"] = o.picture.views;
+    }
+    if (o.outputs.any_page()) write_pages(inputs, o, line.common);
     report["threads"] = line.common.threads;
     report["seconds"] = {
         {"read", seconds_read}, {"values", seconds_values}, {"draw", watch.lap()}, {"total", watch.total()}};
     report["peak_bytes"] = peak_bytes();
     report["outputs"] = o.outputs.paths;
-    report["notes"] = geometry.notes;
+    report["notes"] = first.geometry.notes;
+    if (inputs.size() > 1)
+        for (const std::string& note : inputs.back().geometry.notes) report["notes"].push_back(note);
     present(report, o.input, table_of(report), line.common);
 }
 

@@ -8,11 +8,13 @@
 #include "camera.h"
 #include "check.h"
 #include "colormap.h"
-#include "gaussmap/neighbors.h"
+#include "disc_radii.h"
+#include "drawn_box.h"
 #include "gaussmap/normals.h"
 #include "legend.h"
 #include "normalize.h"
 #include "parallel.h"
+#include "percentile.h"
 #include "rasterizer.h"
 
 namespace gaussmap {
@@ -32,58 +34,19 @@ void check(Points vertices, Triangles faces, const std::vector<double>& values, 
     check_faces(faces, vertices.count);
 }
 
-/// Call visit(point) for every point that is drawn: corners of faces without a non-finite one; points of a cloud.
-template <class Visit>
-void for_drawn(Points vertices, Triangles faces, Visit&& visit) {
-    for (std::size_t f = 0; f < faces.count; ++f) {
-        const Vec3 a = load(vertices[faces[f][0]]), b = load(vertices[faces[f][1]]), c = load(vertices[faces[f][2]]);
-        if (finite(a) && finite(b) && finite(c)) visit(a), visit(b), visit(c);
-    }
-    if (!faces.empty()) return;
-    for (std::size_t v = 0; v < vertices.count; ++v)
-        if (const Vec3 p = load(vertices[v]); finite(p)) visit(p);
-}
-
-struct Box {
-    Vec3 centre, sides;
-    double diagonal() const { return std::hypot(sides.x, sides.y, sides.z); }
-};
-
-Box box_of(Points vertices, Triangles faces) {
-    constexpr double far = std::numeric_limits<double>::infinity();
-    Vec3 low = {far, far, far}, high = {-far, -far, -far};
-    for_drawn(vertices, faces, [&](Vec3 p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    });
-    if (low.x > high.x)
-        throw std::invalid_argument(faces.empty() ? "nothing to draw: no vertex is finite"
-                                                  : "nothing to draw: no face has three finite corners");
-    const Box box = {0.5 * low + 0.5 * high, high - low};
-    if (!std::isfinite(box.diagonal()))
-        throw std::invalid_argument("draw: the vertices are too far apart for double precision; scale them down");
-    return box;
-}
-
-Extent extent_of(Points vertices, Triangles faces, const View& view, Vec3 centre) {
+/// Of what is drawn: discs with their radii, however they are turned; of meshes there are none.
+Extent extent_of(Points vertices, Triangles faces, const std::vector<double>& radii, const View& view, Vec3 centre) {
     constexpr double far = std::numeric_limits<double>::infinity();
     Extent e = {far, -far, far, -far};
-    for_drawn(vertices, faces, [&](Vec3 p) {
+    const auto take = [&](Vec3 p, double radius) {
         const double x = dot(view.right, p - centre), y = dot(view.up, p - centre);
-        e.left = std::min(e.left, x), e.right = std::max(e.right, x);
-        e.bottom = std::min(e.bottom, y), e.top = std::max(e.top, y);
-    });
+        e.left = std::min(e.left, x - radius), e.right = std::max(e.right, x + radius);
+        e.bottom = std::min(e.bottom, y - radius), e.top = std::max(e.top, y + radius);
+    };
+    if (radii.empty()) for_drawn(vertices, faces, [&](Vec3 p) { take(p, 0); });
+    for (std::size_t v = 0; v < radii.size(); ++v)
+        if (const Vec3 p = load(vertices[v]); finite(p)) take(p, radii[v]);
     return e;
-}
-
-/// Value at a fraction of the ranks, linear between them.
-double percentile(std::vector<double>& values, double fraction) {
-    const double rank = fraction * static_cast<double>(values.size() - 1);
-    const auto below = values.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(values.begin(), below, values.end());
-    const double low = *below;
-    if (below + 1 == values.end()) return low;
-    return low + (rank - std::floor(rank)) * (*std::min_element(below + 1, values.end()) - low);
 }
 
 /// Sets picture.low, high and undefined.
@@ -117,28 +80,6 @@ Legend choose_range(Picture& picture, const std::vector<double>& values, double 
             picture.undefined, values.size(), o.diverging};
 }
 
-/// The discs of a cloud: as far as the sixth neighbour, so that neighbours overlap; not above three times the median,
-/// which keeps stray points small. Points at the position of an earlier one, or not finite, have none.
-std::vector<double> disc_radii(Points points, const Execution& run) {
-    const DistinctPoints distinct = distinct_points(points);
-    const std::size_t n = distinct.source.size();
-    constexpr int k = 6;
-    const Neighbors neighbors = nearest_neighbors(distinct.points, k, run);
-    std::vector<double> reach(n, 0), radii(points.count, 0);
-    for_blocks(n, 1 << 15, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (int j = 0; j < k && neighbors[i][j] >= 0; ++j)
-                reach[i] = length(load(&distinct.points[3 * static_cast<std::size_t>(neighbors[i][j])]) -
-                                  load(&distinct.points[3 * i]));
-    });
-    std::vector<double> sorted = reach;
-    const double median = percentile(sorted, 0.5);
-    for (std::size_t i = 0; i < n; ++i)
-        radii[static_cast<std::size_t>(distinct.source[i])] =
-            n == 1 ? 1 : 0.7 * std::clamp(reach[i], 0.3 * median, 3 * median);
-    return radii;
-}
-
 std::vector<Viewport> viewports_of(const PictureOptions& o, int legend) {
     const int height = o.height - legend;
     if (o.views == 1) return {{0, 0, o.width, height}};
@@ -167,17 +108,20 @@ Picture draw(Points vertices, Triangles faces, const std::vector<double>& values
     const std::vector<Viewport> viewports =
         viewports_of(options, labelled ? legend_height(options.width, options.height) : 0);
 
-    const std::vector<View> views = views_of(box.sides, options);
-    std::vector<Extent> extents;
-    extents.reserve(views.size());
-    for (const View& view : views) extents.push_back(extent_of(vertices, faces, view, box.centre));
-    const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
-
     const std::vector<double> unit = unit_normals(vertices, faces, normals, {options.run.threads, {}});
     std::vector<double> radii;
     if (faces.empty()) radii = disc_radii(vertices, part_of(options.run, 0, 0.5));
+    const bool one_place = faces.empty() && box.diagonal() == 0;
+
+    const std::vector<View> views = views_of(box.sides, options);
+    std::vector<Extent> extents;
+    extents.reserve(views.size());
+    const std::vector<double> none;
+    for (const View& view : views)
+        extents.push_back(extent_of(vertices, faces, one_place ? none : radii, view, box.centre));
+    const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
     // A single point has no scale: its disc fills a tenth of the picture.
-    if (faces.empty() && box.diagonal() == 0)
+    if (one_place)
         for (double& radius : radii) radius *= 0.05 * std::min(viewports[0].width, viewports[0].height);
 
     const Ramp ramp(picture.low, picture.high, options.diverging);

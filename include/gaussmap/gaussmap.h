@@ -11,6 +11,7 @@
 //   sampling.h   points on a surface: at random, Poisson-disk
 //   surfaces.h   analytic surfaces with exact normals and curvature
 //   inspect.h    boundary, non-manifold, degenerate, duplicate: what is in a file
+//   page.h       a page to look at the result, in one HTML file
 //   picture.h    a picture of the result, and its PNG
 //   io.h         PLY, OBJ, OFF, STL, XYZ, PCD
 //
@@ -29,6 +30,7 @@
 #include "gaussmap/io.h"
 #include "gaussmap/neighbors.h"
 #include "gaussmap/normals.h"
+#include "gaussmap/page.h"
 #include "gaussmap/picture.h"
 #include "gaussmap/sampling.h"
 #include "gaussmap/surfaces.h"

@@ -1,8 +1,12 @@
-"""Pictures: view, and -o picture.png of curvature and shape."""
+"""Pictures and pages: view, and -o picture.png or page.html of curvature and shape."""
 
+import base64
+import json
+import re
 import struct
 import zlib
 
+import ply
 import pytest
 
 PLANE = b"OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"
@@ -133,10 +137,107 @@ def test_standard_output(gaussmap):
     assert run.code == 0 and decode(run.stdout)[:2] == (50, 40)
 
 
+class Page:
+    """What a page holds, decoded independently of the viewer."""
+
+    def __init__(self, path):
+        self.text = path.read_text()
+        self.head = json.loads(re.search(r'id="gaussmap">(.*?)</script>', self.text).group(1))
+        self.scenes = self.head["scenes"]
+
+    def array(self, about):
+        columns, rows, kind = about["columns"], about["rows"], about["type"]
+        width = {"float64": 8, "octahedral": 2}.get(kind, 4)
+        mask, out = 256**width - 1, []
+        for block, begin in enumerate(range(0, rows, self.head["rows_a_block"]), about["block"]):
+            n = min(rows - begin, self.head["rows_a_block"])
+            text = re.search(rf'id="gaussmap-{block}">([^<]*)<', self.text).group(1)
+            planes = zlib.decompress(base64.b64decode(text))
+            assert len(planes) == n * columns * width
+            before = [0] * columns
+            for r in range(n):
+                for c in range(columns):
+                    coded = sum(planes[(c * width + b) * n + r] << (8 * b) for b in range(width))
+                    base = before[0] if kind == "triangles" and c > 0 else before[c]
+                    before[c] = (base + ((coded >> 1) ^ -(coded & 1))) & mask
+                out.extend(before)
+        if kind.startswith("float"):
+            out = list(struct.unpack(f"<{len(out)}{'d' if width == 8 else 'f'}", b"".join(v.to_bytes(width, "little") for v in out)))
+        return out
+
+    def fields(self, scene=0):
+        return {(f["name"], f["of"]): f for f in self.scenes[scene]["fields"]}
+
+    def values(self, name, of="vertex", scene=0):
+        return self.array(self.fields(scene)[name, of]["values"])
+
+
+def test_a_page_holds_the_numbers_of_the_ply(gaussmap, tmp_path):
+    run = gaussmap("curvature", "t.ply", "--tensor", "--truth", "exact_density", "-o", "t.html", "-o", "out.ply", "--json")
+    assert run.json["outputs"] == ["t.html", "out.ply"]
+    page, (written, _) = Page(tmp_path / "t.html"), ply.read(tmp_path / "out.ply")
+    assert page.head["title"] == "t.ply" and page.scenes[0]["name"] == "t.ply"
+    assert page.values("density") == written["vertex"]["scalar_total_curvature"]
+    assert page.values("kappa", "face") == written["face"]["kappa"]
+    for name in ("k1", "k2", "mean", "gaussian", "shape_index", "curvedness", "exact_density"):
+        assert page.values(name) == written["vertex"][name], name
+    assert page.array(page.scenes[0]["triangles"]) == [v for f in written["face"]["vertex_indices"] for v in f]
+    known = page.fields()
+    assert known["k2", "vertex"]["diverging"] and known["k2", "vertex"]["unit"] == "1/unit"
+    assert ("quality", "vertex") not in known and ("d1x", "vertex") not in known
+
+
+def test_confidence_of_a_cloud_on_a_page(gaussmap, tmp_path):
+    options = ["--as", "cloud", "--confidence", "-o", "t.html", "-o", "out.ply", "-q"]
+    assert gaussmap("curvature", "t.ply", *options).code == 0
+    page, (written, _) = Page(tmp_path / "t.html"), ply.read(tmp_path / "out.ply")
+    assert page.scenes[0]["triangles"] is None and page.scenes[0]["spacing"] > 0
+    assert page.values("density_error") == written["vertex"]["density_error"]
+
+
+def test_a_page_and_a_picture_of_one_run(gaussmap, tmp_path):
+    report = gaussmap("view", "t.ply", "-o", "t.html", "-o", "t.PNG", "--size", "64x64", "--json").json
+    assert report["width"] == 64 and report["field"] == "total curvature"
+    page = Page(tmp_path / "t.html")
+    assert page.text.startswith("<!doctype html>") and page.text.rstrip().endswith("</html>")
+    # Nothing that would load from elsewhere: code and styles stand in the page.
+    assert not re.search(r"<(script|link|img|iframe)[^>]* (src|href)=(?!\"data:,)", page.text)
+    assert {("density", "vertex"), ("kappa", "face"), ("k1", "vertex"), ("exact_density", "vertex")} <= set(page.fields())
+    report = gaussmap("view", "t.ply", "-o", "t.html", "--json").json
+    assert report["width"] is None and report["low"] is None and report["undefined"] == 0
+
+
+def test_a_page_of_two(gaussmap, tmp_path):
+    report = gaussmap("view", "t.ply", "plane.off", "-o", "two.html", "--range", "0,5", "--json").json
+    assert (report["file"], report["second"]["file"], report["second"]["faces"]) == ("t.ply", "plane.off", 2)
+    page = Page(tmp_path / "two.html")
+    assert [s["name"] for s in page.scenes] == ["t.ply", "plane.off"]
+    assert (page.head["low"], page.head["high"]) == (0, 5)
+    assert page.values("density", scene=1) == [0, 0, 0, 0]
+
+
+def test_a_field_of_a_page_comes_first(gaussmap, tmp_path):
+    assert gaussmap("view", "t.ply", "--field", "k2", "--from", "0,0,2", "-o", "t.html").code == 0
+    page = Page(tmp_path / "t.html")
+    assert page.head["field"] == "k2" and page.scenes[0]["toward"] == [0, 0, 1]
+    written, types = ply.read(tmp_path / "t.ply")
+    assert types["vertex", "k2"] == "d" and page.fields()["k2", "vertex"]["values"]["type"] == "float64"
+    assert page.values("k2") == written["vertex"]["k2"]
+
+
+def test_same_page_for_any_number_of_threads(gaussmap, tmp_path):
+    for threads in (1, 3):
+        assert gaussmap("view", "t.ply", "-o", f"{threads}.html", "--threads", threads, "-q").code == 0
+    assert (tmp_path / "1.html").read_bytes() == (tmp_path / "3.html").read_bytes()
+
+
 USAGE = [
-    ("view t.ply", "view: -o OUT is missing; write: gaussmap view IN -o OUT.png… [options]"),
-    ("view t.ply -o t.html", "t.html: unknown extension of an output; the known one is .png"),
-    ("view t.ply -o t.ply", "t.ply: unknown extension of an output; the known one is .png"),
+    ("view t.ply", "view: -o OUT is missing; write: gaussmap view IN [IN2] -o OUT… [options]"),
+    ("view t.ply -o t.ply", "t.ply: unknown extension of an output; the known ones are .png, .html"),
+    ("view t.ply t.ply -o t.png", "two inputs stand side by side on a page; a .png shows one"),
+    ("view - - -o t.html", "both inputs are standard input; name a file for one"),
+    ("view t.ply t.ply t.ply -o t.html", "unexpected argument 't.ply'; write: gaussmap view IN [IN2] -o OUT… [options]"),
+    ("view t.ply -o none/t.html", None),
     ("view t.ply -o t.png --views 3", "--views: '3' is not 1 or 4"),
     ("view t.ply -o t.png --size 800", "--size: '800' is not a size as in 1600x1200, each 16 to 16384"),
     ("view t.ply -o t.png --size 8x800", "--size: '8x800' is not a size as in 1600x1200, each 16 to 16384"),
@@ -154,16 +255,21 @@ def test_wrong_usage(gaussmap, tmp_path, arguments, line):
     run = gaussmap(*arguments.split())
     if line:
         run.fails(2, line)
+    elif "none/" in arguments:
+        run.fails(1, "none/t.html: the folder 'none' does not exist; make it first")
     else:
         assert run.code == 2 and ".png" not in run.stderr.split("known ones are")[1]
-    assert not list(tmp_path.glob("*.png"))
+    assert not list(tmp_path.glob("*.png")) and not list(tmp_path.glob("*.html"))
 
 
 def test_bad_input(gaussmap, tmp_path):
     run = gaussmap("view", "t.ply", "--field", "k3", "-o", "t.png")
     run.fails(3, "t.ply: has no vertex property 'k3' to draw; did you mean 'k1'?")
+    run = gaussmap("view", "t.ply", "plane.off", "--field", "k1", "-o", "t.html")
+    run.fails(3, "plane.off: has no vertex property 'k1' to draw; it has none of one number a vertex")
     (tmp_path / "empty.off").write_bytes(b"OFF\n0 0 0\n")
     assert gaussmap("view", "empty.off", "-o", "t.png").code == 3
     (tmp_path / "nan.xyz").write_bytes(b"nan 0 0\n")
     assert gaussmap("view", "nan.xyz", "-o", "t.png").code == 3
-    assert not (tmp_path / "t.png").exists()
+    assert gaussmap("view", "nan.xyz", "-o", "t.html").code == 3
+    assert not (tmp_path / "t.png").exists() and not (tmp_path / "t.html").exists()
