@@ -55,15 +55,16 @@ async function saved(page) {
 
 const native = (...args) => JSON.parse(gaussmap(...args, "--json"));
 
-function close_to(a, b, what) {
-  assert.ok(Math.abs(a - b) <= 1e-12 * Math.abs(b), `${what}: ${a} in the browser, ${b} natively`);
+function near(a, b, tolerance, what) {
+  assert.ok(Math.abs(a - b) <= tolerance * Math.abs(b), `${what}: ${a} in the browser, ${b} natively`);
 }
 
-/** The report of the page is that of the program: counts equal, numbers to 1e-12. */
+/** The report of the page is that of the program: counts equal, numbers to 1e-12; of clouds, whose fits carry rounding on, to 1e-9. */
 function same(report, expected) {
   for (const key of ["kind", "vertices", "faces", "normals", "estimator", "undefined", "duplicates", "non_finite"]) assert.deepEqual(report[key], expected[key], key);
-  for (const key of ["min", "mean", "rms", "max", "p02", "p50", "p98"]) close_to(report.density[key], expected.density[key], `density ${key}`);
-  if (expected.kappa) close_to(report.kappa.sum, expected.kappa.sum, "kappa");
+  const tolerance = expected.kind === "mesh" ? 1e-12 : 1e-9;
+  for (const key of ["min", "mean", "rms", "max", "p02", "p50", "p98"]) near(report.density[key], expected.density[key], tolerance, `density ${key}`);
+  if (expected.kappa) near(report.kappa.sum, expected.kappa.sum, tolerance, "kappa");
 }
 
 /** Two binary PLY files: one header, and values that differ in the last bit of a float32 at most. */
@@ -180,7 +181,7 @@ test("a file beyond the memory has one message", async () => {
     document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
   });
   await ended(page);
-  assert.equal(await page.locator(".failure").textContent(), "huge.ply: 1.1 GB are too many for a browser, which takes 1.1 GB; use the program gaussmap");
+  assert.equal(await page.locator(".failure").textContent(), "huge.ply: 1.06 GiB are more than the 1 GiB that this page takes; use the program gaussmap");
   await page.context().close();
 });
 

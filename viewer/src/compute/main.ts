@@ -66,7 +66,7 @@ function showTarget(): void {
 const open = (file: File): Promise<void> =>
   during(`Measuring ${file.name}`, async () => {
     const name = safe(file.name), written = "/out/curvature.ply";
-    const answer = await engine.ask({ file: { name, bytes: file }, run: ["curvature", name, "-o", written, "--json"], scene: written });
+    const answer = await engine.ask({ file: { name, bytes: file }, run: ["curvature", name, "-o", written, "--json", "--quiet"], scene: written });
     const report = JSON.parse(answer.out), mesh = report.kind === "mesh", scene = sceneOf(file.name, answer.scene!);
     opened = { name, faces: report.faces, scene, file };
     draw([scene]);
@@ -85,7 +85,7 @@ const decimated = (): Promise<void> =>
   during(`Decimating ${opened!.scene.name}`, async () => {
     const { name, file, scene } = opened!, written = "/out/decimated.ply", shown = "/out/decimated-curvature.ply";
     const options = ["--ratio", String(Number(ratio.value) / 100), ...(fast.checked ? ["--fast"] : [])];
-    const answer = await engine.ask({ file: { name, bytes: file }, run: ["decimate", name, ...options, "-o", written, "--json"] });
+    const answer = await engine.ask({ file: { name, bytes: file }, run: ["decimate", name, ...options, "-o", written, "--json", "--quiet"] });
     const report = JSON.parse(answer.out);
     const measured = await engine.ask({ run: ["curvature", written, "-o", shown, "--quiet"], scene: shown });
     draw([scene, sceneOf(`${stem(scene.name)}, decimated`, measured.scene!)]);
@@ -125,4 +125,5 @@ download.addEventListener("click", () => void save());
 cancel.addEventListener("click", () => {
   engine.cancel();
 });
+document.documentElement.dataset["theme"] = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
 document.body.dataset["state"] = "ready";

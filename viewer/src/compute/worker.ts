@@ -35,7 +35,7 @@ async function start({ script, code }: Start): Promise<Module> {
 
 async function put({ FS }: Module, { name, bytes }: { name: string; bytes: File }): Promise<void> {
   for (const folder of ["/in", "/out"]) for (const old of FS.readdir(folder)) if (old !== "." && old !== "..") FS.unlink(`${folder}/${old}`);
-  if (bytes.size > mostBytes) throw new Error(`${name}: ${(bytes.size / 1e9).toFixed(1)} GB are too many for a browser, which takes ${(mostBytes / 1e9).toFixed(1)} GB; use the program gaussmap`);
+  if (bytes.size > mostBytes) throw new Error(`${name}: ${(bytes.size / mostBytes).toFixed(2)} GiB are more than the 1 GiB that this page takes; use the program gaussmap`);
   FS.writeFile(`/in/${name}`, new Uint8Array(await bytes.arrayBuffer()));
 }
 
