@@ -10,6 +10,8 @@
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make wasm            build/wasm/gaussmap.html: the page that measures in the browser
 #   make bench-browser   that page against the program on one thread (IN="a.ply b.ply": on these)
+#   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
+#   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
 #   make clean           remove what was built
 
@@ -23,12 +25,13 @@ THREADED := test_types test_curvature test_cloud test_normals test_neighbors tes
 PROGRAM := build/release/gaussmap
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
-# Debian packages that are listed but not installed, nor there as a program of that name (node and npm of another source); sudo where we are not root.
+# Debian packages that are listed but not installed, nor there as a program of that name (npm of another source); sudo
+# where we are not root.
 packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-browser test-asan test-tsan wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate fuzz clean setup release
+.PHONY: demo test test-release test-cli test-browser test-asan test-tsan wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -89,7 +92,7 @@ bench-browser: release wasm
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
 	@cmake --preset release >/dev/null
-	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null
+	run-clang-tidy-14 -quiet -p build/release '/(src|cli|examples)/' 2>/dev/null | sed '/clang-tidy-14 --use-color/d'
 
 bench: setup
 	@cmake --preset bench >/dev/null
@@ -116,6 +119,16 @@ bench-decimate: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_decimate
 	/usr/bin/python3 bench/decimate.py build/bench $(IN)
+
+bench-real: packages = packages.txt bench/packages.txt
+bench-real: release
+	/usr/bin/python3 bench/real build/release docs/real
+
+paper: packages = packages.txt bench/packages.txt
+paper: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_accuracy bench_decimate
+	/usr/bin/python3 bench/paper build/bench docs/paper $(if $(QUICK),--quick)
 
 fuzz: setup
 	@cmake --preset fuzz >/dev/null

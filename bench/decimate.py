@@ -13,7 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from environment import python_of_peers
+from environment import folder_of_npm, python_of_peers
 
 SOURCE = Path(__file__).resolve().parent / "decimate"
 DATA = SOURCE.parents[1] / "../shared/data/meshes"
@@ -21,6 +21,7 @@ MESHES = ["seed/bunny.ply", "seed/cow.ply", "classic/armadillo.off", "classic/ho
           "classic/fandisk.obj", "classic/rocker-arm.obj", "classic/ChineseDragon-10kv.off"]
 RATIOS = [0.5, 0.1, 0.05, 0.02, 0.01]
 PYTHON_PEERS = ["vcg", "vcg-quality", "meshoptimizer", "fast-simplification", "pyfqmr", "libigl", "open3d"]
+MESHOPTIMIZER = "meshoptimizer@1.3.0"
 OURS = {
     "best": [],
     "best, objective max": ["--objective", "max"],
@@ -33,17 +34,16 @@ OURS = {
 }
 
 
-def run(command):
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
+def run(command, folder=None):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, cwd=folder)
     return done.stdout if done.returncode == 0 else ""
 
 
 class Bench:
-    def __init__(self, build):
+    def __init__(self, build, folder, python, peers):
         self.build, self.program = build, build / "gaussmap"
-        self.folder = build / "bench/decimate"
-        self.folder.mkdir(parents=True, exist_ok=True)
-        self.python = python_of_peers(self.folder / "venv", SOURCE / "requirements.txt")
+        self.folder, self.python, self.python_peers = folder, python, peers
+        self.npm = folder_of_npm(build / "bench/npm", MESHOPTIMIZER)
         kept = self.folder / "judged.json"
         self.judged = json.loads(kept.read_text()) if kept.exists() else {}
 
@@ -62,11 +62,15 @@ class Bench:
         kept = self.folder / f"{mesh.stem}.tsv"
         if not kept.exists():
             prefix = self.folder / f"{mesh.stem}_"
-            commands = [[self.python, SOURCE / "peers.py", peer] for peer in PYTHON_PEERS if self.python]
+            commands = [[self.python, SOURCE / "peers.py", peer] for peer in self.python_peers if self.python]
             tools = self.build / "bench"
             commands += [[tools / "decimate_cgal", method] for method in ("lt", "gh") if (tools / "decimate_cgal").exists()]
             commands += [[tools / "decimate_openmesh"]] if (tools / "decimate_openmesh").exists() else []
-            kept.write_text("".join(run([*command, mesh, prefix, *targets]) for command in commands))
+            lines = [run([*command, mesh, prefix, *targets]) for command in commands]
+            if self.npm:
+                lines += [run(["node", SOURCE / "meshoptimizer.mjs", mode, mesh, prefix, *targets], self.npm)
+                          for mode in ("keep", "update")]
+            kept.write_text("".join(lines))
         return [line.split("\t") for line in kept.read_text().splitlines()]
 
     def ours(self, mesh, target, options):
@@ -75,24 +79,25 @@ class Bench:
         made = json.loads(report)
         return made["faces_out"], made["seconds"]["decimate"], *self.judge(mesh, out, keep=False)
 
-    def cells(self, path):
+    def cells(self, path, ratios):
         mesh = self.folder / f"{path.stem}.off"
         run([self.program, "convert", path, "-o", mesh, "--triangulate"])
         faces = json.loads(run([self.program, "info", mesh, "--json"]))["faces"]
-        targets = [int(faces * ratio) for ratio in RATIOS]
+        targets = [int(faces * ratio) for ratio in ratios]
         rows = self.peers(mesh, targets)
-        for ratio, target in zip(RATIOS, targets):
+        for ratio, target in zip(ratios, targets):
             results = {}
             for peer, _, _, asked, made, seconds, file in rows:
                 if int(asked) == target and 0 < int(made) <= 1.02 * target + 2:
                     results[peer] = (*self.judge(mesh, Path(file)), float(seconds))
             yield mesh, ratio, target, results
 
+    def settings(self):
+        """{(peer, version, parameters)} of the rows there are."""
+        return {tuple(line.split("\t")[:3]) for kept in self.folder.glob("*.tsv") for line in kept.open()}
+
     def versions(self):
-        lines = {"\t".join(line.split("\t")[:3]) for kept in self.folder.glob("*.tsv") for line in kept.open()}
-        return ["| peer | version | parameters |", "|---|---|---|"] + [
-            "| " + " | ".join(line.split("\t")) + " |" for line in sorted(lines)
-        ]
+        return {peer: version for peer, version, _ in self.settings()}
 
 
 def geometric_mean(values):
@@ -100,9 +105,14 @@ def geometric_mean(values):
 
 
 def main():
-    bench = Bench(Path(sys.argv[1]).resolve())
-    cells = [cell for name in sys.argv[2:] or MESHES for cell in bench.cells(DATA / name if not Path(name).exists() else Path(name))]
-    lines = bench.versions()
+    build = Path(sys.argv[1]).resolve()
+    folder = build / "bench/decimate"
+    folder.mkdir(parents=True, exist_ok=True)
+    bench = Bench(build, folder, python_of_peers(folder / "venv", SOURCE / "requirements.txt"), PYTHON_PEERS)
+    meshes = [Path(name) if Path(name).exists() else DATA / name for name in sys.argv[2:] or MESHES]
+    cells = [cell for mesh in meshes for cell in bench.cells(mesh, RATIOS)]
+    lines = ["| peer | version | parameters |", "|---|---|---|"]
+    lines += ["| " + " | ".join(setting) + " |" for setting in sorted(bench.settings())]
     for mode, options in OURS.items():
         lines += ["", f"## {mode}", "", "| mesh | % | RMS | best peer | ratio | max | best peer | ratio |",
                   "|---|---|---|---|---|---|---|---|"]
@@ -126,4 +136,5 @@ def main():
     print(page)
 
 
-main()
+if __name__ == "__main__":
+    main()

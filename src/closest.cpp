@@ -54,16 +54,17 @@ void check_surface(Points vertices, Triangles faces) {
     if (faces.count > most)
         throw std::invalid_argument("faces has " + std::to_string(faces.count) + " entries, more than " +
                                     std::to_string(most) + "; split the surface");
-    const auto check_finite = [&](std::size_t v, const std::string& where) {
-        if (!finite(load(vertices[v])))
-            throw std::invalid_argument("vertices[" + std::to_string(v) + "]" + where +
-                                        " is not finite; leave it out first");
+    const auto refuse = [](std::size_t v, const std::string& where) {
+        throw std::invalid_argument("vertices[" + std::to_string(v) + "]" + where +
+                                    " is not finite; leave it out first");
     };
     for (std::size_t i = 0; i < 3 * faces.count; ++i)
-        check_finite(static_cast<std::size_t>(faces.abc[i]), ", of faces[" + std::to_string(i / 3) + "],");
+        if (const auto v = static_cast<std::size_t>(faces.abc[i]); !finite(load(vertices[v])))
+            refuse(v, ", of faces[" + std::to_string(i / 3) + "],");
     if (!faces.empty()) return;
     check_countable(vertices);
-    for (std::size_t v = 0; v < vertices.count; ++v) check_finite(v, "");
+    for (std::size_t v = 0; v < vertices.count; ++v)
+        if (!finite(load(vertices[v]))) refuse(v, "");
 }
 
 double reach(Points vertices, Triangles faces) {

@@ -156,8 +156,8 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     mesh = RingMesh({}, {});
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
-    if (options.method == DecimationMethod::best && !options.fast && !unchanged)
-        bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;
+    if (fitted) bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
     watch.add_to(out.seconds_fit);
 
     for (const Vec3 q : coarse.position) {
@@ -166,7 +166,8 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     }
     for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
     if (options.sources) {
-        out.vertex_source = vertex_sources(in, coarse, {options.run.threads, {}});
+        out.vertex_source =
+            fitted ? vertex_sources(in, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
         if (!options.seams.empty()) {
             RingMesh fine(in.positions, in.corners);
             tag_seams(fine, in, options.seams);
@@ -217,7 +218,8 @@ Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options)
         const double bound = proven_error(in, flat, fine, made, options.error, run);
         const bool stuck = made.stop == DecimationStop::validity;
         if (bound <= options.error) {
-            enough = static_cast<double>(made.faces.size() / 3);
+            const std::size_t faces = made.faces.size() / 3;
+            enough = static_cast<double>(faces);
             best = std::move(made);
             best.error_bound = bound;
             if (stuck) break;

@@ -1,8 +1,9 @@
 #include "decimation_input.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
+#include <numeric>
+#include <tuple>
 
 #include "bounding_box.h"
 #include "gaussmap/neighbors.h"
@@ -27,29 +28,36 @@ std::vector<std::int32_t> usable_faces(Points vertices, Triangles faces, Decimat
 /// Faces by the least of their vertices, which comes first, then by the others, then by their index.
 void sort_faces(Triangles faces, const std::vector<std::int32_t>& rank, DecimationInput& in) {
     struct Key {
-        std::array<std::int32_t, 3> ranks;
-        std::int32_t face;
+        std::int32_t second, third, face;
         std::int8_t rotation;
         bool operator<(const Key& other) const {
-            return ranks != other.ranks ? ranks < other.ranks : face < other.face;
+            return std::tie(second, third, face) < std::tie(other.second, other.third, other.face);
         }
     };
-    std::vector<Key> keys;
-    keys.reserve(in.faces.size());
+    const auto least_corner = [&](std::int32_t f) {
+        const std::int32_t a = rank[faces[f][0]], b = rank[faces[f][1]], c = rank[faces[f][2]];
+        return a < b && a < c ? 0 : b < c ? 1 : 2;
+    };
+    // A bucket for each least vertex, then the few faces in each.
+    std::vector<std::size_t> begin(in.positions.size() + 1, 0);
+    for (const std::int32_t f : in.faces) ++begin[static_cast<std::size_t>(rank[faces[f][least_corner(f)]]) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Key> keys(in.faces.size());
+    std::vector<std::size_t> end(begin.begin(), begin.end() - 1);
     for (const std::int32_t f : in.faces) {
-        std::array<std::int32_t, 3> r{rank[faces[f][0]], rank[faces[f][1]], rank[faces[f][2]]};
-        const auto least = std::min_element(r.begin(), r.end());
-        const auto rotation = static_cast<std::int8_t>(least - r.begin());
-        std::rotate(r.begin(), least, r.end());
-        keys.push_back({r, f, rotation});
+        const int k = least_corner(f);
+        keys[end[static_cast<std::size_t>(rank[faces[f][k]])]++] = {
+            rank[faces[f][(k + 1) % 3]], rank[faces[f][(k + 2) % 3]], f, static_cast<std::int8_t>(k)};
     }
-    std::sort(keys.begin(), keys.end());
     in.corners.reserve(3 * keys.size());
     in.rotation.reserve(keys.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-        in.faces[i] = keys[i].face;
-        in.rotation.push_back(keys[i].rotation);
-        in.corners.insert(in.corners.end(), keys[i].ranks.begin(), keys[i].ranks.end());
+    for (std::size_t v = 0; v < end.size(); ++v) {
+        std::sort(&keys[0] + begin[v], &keys[0] + end[v]);
+        for (std::size_t i = begin[v]; i < end[v]; ++i) {
+            in.faces[i] = keys[i].face;
+            in.rotation.push_back(keys[i].rotation);
+            in.corners.insert(in.corners.end(), {static_cast<std::int32_t>(v), keys[i].second, keys[i].third});
+        }
     }
 }
 

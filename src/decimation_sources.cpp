@@ -1,6 +1,7 @@
 #include "decimation_sources.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "gaussmap/distance.h"
@@ -48,6 +49,32 @@ std::vector<std::int32_t> sorted_by(const std::vector<std::int32_t>& key) {
 }
 
 }  // namespace
+
+std::vector<SurfacePoint> joined_sources(const DecimationInput& in, const RingMesh& coarse,
+                                         const std::vector<std::int32_t>& joined) {
+    const std::size_t count = coarse.position.size();
+    const auto apart = [&](std::size_t v) { return squared(in.positions[v] - coarse.position[joined[v]]); };
+    std::vector<std::int32_t> nearest(count, -1);
+    for (std::size_t v = 0; v < joined.size(); ++v) {
+        if (joined[v] < 0) continue;
+        std::int32_t& kept = nearest[joined[v]];
+        if (kept < 0 || apart(v) < apart(static_cast<std::size_t>(kept))) kept = static_cast<std::int32_t>(v);
+    }
+    std::vector<double> least(count, std::numeric_limits<double>::infinity());
+    std::vector<std::int32_t> face(count, -1);
+    for (std::size_t c = 0; c < in.corners.size(); ++c) {
+        const std::int32_t v = joined[in.corners[c]];
+        if (v < 0 || nearest[v] != in.corners[c]) continue;
+        const std::int32_t* abc = &in.corners[c - c % 3];
+        const double distance =
+            closest_on_triangle(coarse.position[v], in.positions[abc[0]], in.positions[abc[1]], in.positions[abc[2]])
+                .squared;
+        if (distance < least[v]) least[v] = distance, face[v] = static_cast<std::int32_t>(c / 3);
+    }
+    std::vector<SurfacePoint> out;
+    for (std::size_t v = 0; v < count; ++v) out.push_back(on_face(in, face[v], coarse.position[v]));
+    return out;
+}
 
 std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const RingMesh& coarse, const Execution& run) {
     std::vector<double> points;

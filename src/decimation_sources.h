@@ -9,6 +9,11 @@
 
 namespace gaussmap {
 
+/// Near points of the input, found without a search: the nearest on the faces around that one of the vertices joined in
+/// a coarse vertex which is nearest to it. \param joined  the coarse vertex of each vertex of the input, −1 of none.
+std::vector<SurfacePoint> joined_sources(const DecimationInput& in, const RingMesh& coarse,
+                                         const std::vector<std::int32_t>& joined);
+
 /// The nearest point of the input to every vertex of the coarse mesh.
 std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const RingMesh& coarse, const Execution& run);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "parallel.h"
@@ -18,6 +17,8 @@ constexpr double flat_cost = 1e-9;
 /// Costs are taken in steps of this ratio, and within a step the vertices in their order, which is that of space:
 /// memory is read along, not at random, and no heap is kept.
 constexpr double step_ratio = 1.1;
+/// Vertices to a block: those whose least key is above the limit are passed over.
+constexpr std::size_t block = 64;
 constexpr double never = std::numeric_limits<double>::infinity();
 
 class Greedy {
@@ -38,19 +39,14 @@ class Greedy {
     std::vector<std::int32_t> run() {
         const auto span = static_cast<double>(mesh_.face_count() - std::min(mesh_.face_count(), options_.faces));
         const double start = static_cast<double>(mesh_.face_count());
-        std::vector<std::int32_t> waiting(key_.size());
-        std::iota(waiting.begin(), waiting.end(), 0);
+        least_.resize((key_.size() + block - 1) / block, 0);
         for (double limit = 0; mesh_.face_count() > options_.faces;) {
             double least = never;
-            std::size_t kept = 0;
-            for (const std::int32_t v : waiting) {
-                if (key_[v] <= limit) serve(v, limit);
-                if (mesh_.first[v] < 0) continue;
-                waiting[kept++] = v;
-                least = std::min(least, key_[v]);
+            for (std::size_t b = 0; b < least_.size(); ++b) {
+                if (least_[b] <= limit) serve_block(b, limit);
+                least = std::min(least, least_[b]);
                 if (mesh_.face_count() <= options_.faces) return std::move(parent_);
             }
-            waiting.resize(kept);
             if (least == never) break;
             limit = std::max(least * step_ratio, limit * step_ratio);
             if (options_.run.progress &&
@@ -61,6 +57,20 @@ class Greedy {
     }
 
   private:
+    void serve_block(std::size_t b, double limit) {
+        const std::size_t end = std::min((b + 1) * block, key_.size());
+        for (std::size_t v = b * block; v < end; ++v)
+            if (key_[v] <= limit) serve(static_cast<std::int32_t>(v), limit);
+        least_[b] = *std::min_element(key_.begin() + static_cast<std::ptrdiff_t>(b * block),
+                                      key_.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+
+    void set_key(std::int32_t v, double key) {
+        key_[v] = key;
+        double& least = least_[static_cast<std::size_t>(v) / block];
+        least = std::min(least, key);
+    }
+
     /// Collapse v with its partner as long as that costs no more than the limit.
     void serve(std::int32_t v, double limit) {
         while (key_[v] <= limit && mesh_.first[v] >= 0 && mesh_.face_count() > options_.faces) {
@@ -81,7 +91,7 @@ class Greedy {
 
     enum State : std::uint8_t {
         fresh,
-        stale,   ///< quadrics have changed since the key was made
+        stale,   ///< something has changed since the key was made: it bounds the cost from below
         checked  ///< the partner is the best of those with which the collapse was valid
     };
     struct Candidate {
@@ -164,7 +174,7 @@ class Greedy {
         const auto [cost, partner] = best(v);
         partner_[v] = partner;
         state_[v] = fresh;
-        key_[v] = cost;
+        set_key(v, cost);
     }
 
     /// The cheapest partner with which the collapse is valid.
@@ -180,20 +190,25 @@ class Greedy {
             break;
         }
         state_[v] = checked;
-        key_[v] = key;
+        set_key(v, key);
     }
 
     void join(std::int32_t a, std::int32_t b, Vec3 p) {
         // The one of the lower number stays, whichever side asked.
         if (b < a) std::swap(a, b);
         const double ta = quadric_.empty() ? 1 : quadric_[a].trace(), tb = quadric_.empty() ? 1 : quadric_[b].trace();
-        if (options_.cost == CollapseCost::inherited) quadric_[a] += quadric_[b];
+        const bool grows = options_.cost == CollapseCost::inherited;
+        if (grows) quadric_[a] += quadric_[b];
         weight_[a] = ta + tb > 0 ? (ta * weight_[a] + tb * weight_[b]) / (ta + tb) : weight_[a];
         mesh_.collapse(a, b, p);
         parent_[b] = a;
-        key_[b] = never;
+        set_key(b, never);
         ring_.clear();
         mesh_.for_neighbors(a, [&](std::int32_t w) { ring_.push_back({0, w}); });
+        if (grows) {
+            await_growth(a, b, p);
+            return;
+        }
         if (options_.cost == CollapseCost::present) {
             quadric_[a] = quadric_of(a);
             for (const auto& [_, w] : ring_) quadric_[w] = quadric_of(w);
@@ -205,16 +220,29 @@ class Greedy {
         }
         partner_[a] = own.second;
         state_[a] = fresh;
-        key_[a] = own.first;
+        set_key(a, own.first);
         for (const auto& [cost, w] : ring_) {
             if (partner_[w] == a || partner_[w] == b || state_[w] == checked) {
                 choose(w);
             } else if (cost < key_[w]) {
                 partner_[w] = a, state_[w] = fresh;
-                key_[w] = cost;
+                set_key(w, cost);
             } else if (options_.cost == CollapseCost::present) {
                 state_[w] = stale;
             }
+        }
+    }
+
+    /// Quadrics that only grow make keys that only grow: what changed is chosen anew when its turn comes, and each side
+    /// of `a`, which b joined at p, when the turn of `a` does.
+    void await_growth(std::int32_t a, std::int32_t b, Vec3 p) {
+        set_key(a, quadric_[a].at(p));
+        state_[a] = stale;
+        for (const auto& [_, w] : ring_) {
+            if (state_[w] == checked)
+                choose(w);
+            else if (partner_[w] == a || partner_[w] == b)
+                state_[w] = stale;
         }
     }
 
@@ -227,6 +255,7 @@ class Greedy {
     std::vector<std::int32_t> parent_;
     std::vector<std::pair<double, std::int32_t>> ring_;  ///< neighbours with costs, room used again
     std::vector<double> key_;                            ///< what joining the partner costs
+    std::vector<double> least_;                          ///< of the keys of each block, or less
 };
 
 }  // namespace

@@ -42,7 +42,7 @@ std::vector<std::uint8_t> planes_of(std::span<const Word> numbers, std::size_t c
 #ifdef GAUSSMAP_ZLIB
 
 std::vector<std::uint8_t> deflated(const std::vector<std::uint8_t>& bytes) {
-    // Level 3 measured within 3 % of the size of level 6, in a third of the time.
+    // Level 3 measured 1.5 % larger than level 6, in half the time.
     constexpr int level = 3;
     uLongf size = compressBound(static_cast<uLong>(bytes.size()));
     std::vector<std::uint8_t> out(size);

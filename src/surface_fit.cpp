@@ -185,8 +185,8 @@ void move_vertices(RingMesh& mesh, FitSamples& samples, const FitNorm& norm, con
                 move[v] = wanted_move(mesh, samples, rows, static_cast<std::int32_t>(v), norm);
     });
     for (std::size_t v = 0; v < move.size(); ++v)
-        for (double part = 1; part > 0.2; part /= 2) {
-            const Vec3 p = mesh.position[v] + part * move[v];
+        for (int halvings = 0; halvings < 3; ++halvings) {
+            const Vec3 p = mesh.position[v] + std::ldexp(1.0, -halvings) * move[v];
             if (mesh.folds(static_cast<std::int32_t>(v), p)) continue;
             mesh.position[v] = p;
             break;

@@ -271,8 +271,8 @@ class Swaps {
         const double l = length(up);
         Vec3 p = middle;
         if (l > 0 && square > 0)
-            for (double part = 1; part > 0.1; part /= 2) {
-                p = middle + part * sum / square / l * up;
+            for (int halvings = 0; halvings < 4; ++halvings) {
+                p = middle + std::ldexp(sum / square / l, -halvings) * up;
                 if (fits(a, b, c, p) && fits(d, c, b, p)) break;
                 p = middle;
             }

@@ -65,7 +65,8 @@ struct Decimation {
     std::vector<double> vertices;             ///< 3 a vertex
     std::vector<std::int32_t> faces;          ///< 3 a face
     std::vector<std::int32_t> face_source;    ///< a face: the input's face that it descends from
-    std::vector<SurfacePoint> vertex_source;  ///< a vertex: the nearest point of the input; empty unless asked for
+    std::vector<SurfacePoint> vertex_source;  ///< a vertex: the nearest point of the input, without a fit a near
+                                              ///< one; empty unless asked for
     std::vector<SurfacePoint>
         corner_source;  ///< 3 a face: the same on the face's side of the seams; empty without seams
     DecimationStop stop = DecimationStop::target;

@@ -97,7 +97,9 @@ TEST(Decimate, ThePlaneStaysThePlane) {
         if (way.method == DecimationMethod::edge) continue;  // midpoints cut the corners of the border
         SCOPED_TRACE(way.name);
         const Decimation d = decimate(s.vertices, s.faces, to(40, way));
-        EXPECT_EQ(d.faces.size() / 3, 40u);
+        // The last collapse may take two faces where one was too many.
+        EXPECT_LE(d.faces.size() / 3, 40u);
+        EXPECT_GE(d.faces.size() / 3, 39u);
         for (std::size_t i = 2; i < d.vertices.size(); i += 3) EXPECT_NEAR(d.vertices[i], 0, 1e-12);
         EXPECT_NEAR(counts_of(d.vertices, d.faces).area, 6, 0.06);
     }
@@ -245,6 +247,32 @@ TEST(Decimate, SeamsStayAndValuesComeFromTheirSide) {
                   0.05);
     }
     EXPECT_GT(on_seam, 10u);
+}
+
+TEST(Decimate, SourcesAreNear) {
+    const Surface s = gaussmap::bumpy_sphere(1, 0.15, 6, 5, {0.2, 0.02, 3});
+    const gaussmap::ClosestIndex fine(s.vertices, s.faces);
+    for (const Way& way : ways) {
+        SCOPED_TRACE(way.name);
+        DecimateOptions options = to(1000, way);
+        options.sources = true;
+        const Decimation d = decimate(s.vertices, s.faces, options);
+        ASSERT_EQ(d.vertex_source.size(), d.vertices.size() / 3);
+        const auto nearest = fine.closest(d.vertices).distance;
+        double found = 0, least = 0;
+        for (std::size_t v = 0; v < nearest.size(); ++v) {
+            const gaussmap::SurfacePoint& p = d.vertex_source[v];
+            EXPECT_NEAR(p.weights[0] + p.weights[1] + p.weights[2], 1, 1e-12);
+            double at[3] = {0, 0, 0};
+            for (int k = 0; k < 3; ++k)
+                for (int j = 0; j < 3; ++j) at[j] += p.weights[k] * s.vertices[3 * s.faces[3 * p.face + k] + j];
+            const double* q = &d.vertices[3 * v];
+            const double apart = std::hypot(at[0] - q[0], at[1] - q[1], at[2] - q[2]);
+            EXPECT_GE(apart, nearest[v] - 1e-12);
+            found += apart, least += nearest[v];
+        }
+        EXPECT_LT(found, 1.1 * least + 1e-9) << found / static_cast<double>(nearest.size());
+    }
 }
 
 TEST(Decimate, HolesCloseOnlyWhenAllowed) {

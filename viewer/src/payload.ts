@@ -53,15 +53,25 @@ function bytesOf(text: string): Uint8Array<ArrayBuffer> {
 async function inflated(index: number, expected: number): Promise<Uint8Array> {
   const element = document.getElementById(`gaussmap-${index}`);
   if (!element) throw new BrokenPage(`block ${index} of its data is missing`);
-  let out: Uint8Array;
+  const out = new Uint8Array(expected);
+  let length = 0;
   try {
-    const stream = new Blob([bytesOf(element.textContent!)]).stream().pipeThrough(new DecompressionStream("deflate"));
-    out = new Uint8Array(await new Response(stream).arrayBuffer());
+    // Straight into the stream: a Blob would take the bytes through another process, in small pieces.
+    const stream = new DecompressionStream("deflate"), writer = stream.writable.getWriter();
+    const written = Promise.all([writer.write(bytesOf(element.textContent!)), writer.close()]);
+    written.catch(() => undefined); // reading tells of it too
+    const reader = stream.readable.getReader();
+    for (let part = await reader.read(); !part.done; part = await reader.read()) {
+      const bytes = part.value as Uint8Array;
+      if (length + bytes.length <= expected) out.set(bytes, length);
+      length += bytes.length;
+    }
+    await written;
   } catch {
     throw new BrokenPage(`block ${index} of its data is damaged`);
   }
   element.remove();
-  if (out.length !== expected) throw new BrokenPage(`block ${index} holds ${out.length} bytes instead of ${expected}`);
+  if (length !== expected) throw new BrokenPage(`block ${index} holds ${length} bytes instead of ${expected}`);
   return out;
 }
 
@@ -144,7 +154,7 @@ async function sceneOf(head: Head["scenes"][number], rowsABlock: number): Promis
     return { ...rest, ofFaces: of === "face", values: values[i]! };
   });
   const { name, origin, spacing, toward, up } = head;
-  return { name, origin, positions, triangles, normals: directions ? Int16Array.from(directions as Int32Array) : null, spacing, toward, up, fields };
+  return { name, origin, positions, triangles, normals: directions ? new Int16Array(directions as Int32Array) : null, spacing, toward, up, fields };
 }
 
 /** \throws BrokenPage with what is wrong. */

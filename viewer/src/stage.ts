@@ -24,6 +24,7 @@ export class Stage {
   private readonly marker: THREE.Points;
   private marked: Picked | null = null;
   private waiting = false;
+  private size = "";
   private movingUntil = 0;
   private lastFrame = 0;
   private budget = 4_000_000;
@@ -54,6 +55,11 @@ export class Stage {
       pose: { yaw: 0, pitch: 0, distance: 4, target: [0, 0, 0] },
     }));
     this.marker = markerPoint();
+    if (isSoftware(this.renderer)) {
+      // Seconds for a million triangles: something to see first, the whole thereafter.
+      this.budget = 150_000;
+      this.movingUntil = Infinity;
+    }
     this.resize();
     this.reset();
     this.observer.observe(canvas);
@@ -71,6 +77,9 @@ export class Stage {
 
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas;
+    const size = `${clientWidth} ${clientHeight} ${window.devicePixelRatio}`;
+    if (size === this.size) return; // an observer begins by telling what is known: no second picture for that
+    this.size = size;
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
     this.renderer.setSize(Math.max(1, clientWidth), Math.max(1, clientHeight), false);
     this.draw();
@@ -126,6 +135,7 @@ export class Stage {
     requestAnimationFrame((now) => {
       this.waiting = false;
       const moving = now < this.movingUntil;
+      if (this.movingUntil === Infinity) this.movingUntil = 0;
       if (moving) this.learn(now - this.lastFrame);
       this.lastFrame = now;
       this.render(moving ? this.budget : Infinity);
@@ -198,6 +208,11 @@ export class Stage {
     this.draw();
     return this.canvas;
   }
+}
+
+function isSoftware(renderer: THREE.WebGLRenderer): boolean {
+  const gl = renderer.getContext(), known = gl.getExtension("WEBGL_debug_renderer_info");
+  return known !== null && /swiftshader|llvmpipe|software/i.test(String(gl.getParameter(known.UNMASKED_RENDERER_WEBGL)));
 }
 
 /** A ring around a vertex, over everything. */

@@ -1,0 +1,31 @@
+"""open3d_normals.py FILE OUT K: a cloud with Open3D's normals, as the author's Open3D program makes them.
+
+Principal component analysis of K neighbours, oriented along the minimum spanning tree of Hoppe et al. 1992
+(orient_normals_consistent_tangent_plane), both Open3D's. OUT is a PLY with the file's points and exact densities.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from judge import read_shape  # noqa: E402
+
+
+def main(path, out, k):
+    import open3d
+
+    points, _, _, truth = read_shape(path)
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
+    cloud.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(int(k) + 1))  # Open3D counts the point itself
+    cloud.orient_normals_consistent_tangent_plane(int(k))
+    columns = np.column_stack([points, np.asarray(cloud.normals), truth]).astype("<f8")
+    names = "x y z nx ny nz exact_density".split()
+    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
+              *(f"property double {name}" for name in names), "end_header", ""]
+    Path(out).write_bytes("\n".join(header).encode() + columns.tobytes())
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
