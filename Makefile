@@ -81,8 +81,8 @@ test-tsan: setup
 	@cmake --build --preset tsan --target $(THREADED)
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
 
-wasm: packages = packages.txt wasm/packages.txt
 wasm: setup
+	@$(MAKE) --no-print-directory setup packages=wasm/packages.txt
 	@cmake --preset wasm >/dev/null
 	@cmake --build --preset wasm
 
