@@ -3,13 +3,15 @@
 #   make demo [IN=file]  install what is missing, build, measure a shape made on the spot (and IN)
 #   make test            everything that is tested: C++, command line, install, layout; Release and sanitizers
 #   make test-python     the Python package alone: wheel, clean environment, tests, types, documentation
-#   make test-browser    the viewer in chromium (part of make test); screenshots in build/browser
+#   make test-browser    the viewer and the page of make wasm in chromium (part of make test); screenshots in build/browser
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make bench-python    the package against the library, and against peers in Python
+#   make wasm            build/wasm/gaussmap.html: the page that measures in the browser
+#   make bench-browser   that page against the program on one thread (IN="a.ply b.ply": on these)
 #   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
 #   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
@@ -32,7 +34,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-browser test-asan test-tsan test-python python-wheel python-stubs lint bench bench-accuracy bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
+.PHONY: demo test test-release test-cli test-browser test-asan test-tsan test-python python-wheel python-stubs wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -64,7 +66,7 @@ test-cli: release
 	GAUSSMAP=$(PROGRAM) $(PYTEST) tests/cli
 
 # The viewer is built with the program; node tells when no test ran.
-test-browser: release
+test-browser: release wasm
 	cd viewer && npm run --silent check
 	@rm -rf build/browser; mkdir -p build/browser
 	GAUSSMAP=$(PROGRAM) node --test tests/browser/ | tee build/browser/report.tap
@@ -100,6 +102,14 @@ test-python: release python-wheel
 
 python-stubs: python-wheel
 	$(PYTHON) -m nanobind.stubgen -m gaussmap._gaussmap -o python/gaussmap/_gaussmap.pyi
+
+wasm: setup
+	@$(MAKE) --no-print-directory setup packages=wasm/packages.txt
+	@cmake --preset wasm >/dev/null
+	@cmake --build --preset wasm
+
+bench-browser: release wasm
+	GAUSSMAP=$(PROGRAM) node bench/browser/speed.mjs $(IN)
 
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)

@@ -1,14 +1,13 @@
 // gaussmap: the command line. Chooses the verb, and turns every way a run can end into one line and an exit code.
 #include <fmt/format.h>
 
-#include <exception>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "console.h"
 #include "gaussmap/io.h"
+#include "outcome.h"
 #include "verbs.h"
 
 namespace cli {
@@ -81,22 +80,6 @@ void dispatch(int argc, char** argv) {
                               hint.empty() ? fmt::format("; the verbs are {}", fmt::join(names, ", ")) : hint));
 }
 
-Exit run(int argc, char** argv) {
-    try {
-        dispatch(argc, argv);
-        return Exit::done;
-    } catch (const Failure& failure) {
-        complain(failure.what());
-        return failure.code;
-    } catch (const gaussmap::FormatError& error) {
-        complain(error.what());
-        return Exit::bad_input;
-    } catch (const std::bad_alloc&) {
-        complain("out of memory; close other programs, or work on a smaller file");
-    } catch (const std::exception& error) { complain(error.what()); }
-    return Exit::failed;
-}
-
 }  // namespace
 }  // namespace cli
 
@@ -106,5 +89,5 @@ int main(int argc, char** argv) {
         cli::say(cli::help());
         return static_cast<int>(cli::Exit::wrong_usage);
     }
-    return static_cast<int>(cli::run(argc, argv));
+    return static_cast<int>(cli::outcome_of(cli::dispatch, argc, argv));
 }

@@ -34,14 +34,18 @@ void check(Points vertices, Triangles faces, const std::vector<double>& values, 
     check_faces(faces, vertices.count);
 }
 
-Extent extent_of(Points vertices, Triangles faces, const View& view, Vec3 centre) {
+/// Of what is drawn: discs with their radii, however they are turned; of meshes there are none.
+Extent extent_of(Points vertices, Triangles faces, const std::vector<double>& radii, const View& view, Vec3 centre) {
     constexpr double far = std::numeric_limits<double>::infinity();
     Extent e = {far, -far, far, -far};
-    for_drawn(vertices, faces, [&](Vec3 p) {
+    const auto take = [&](Vec3 p, double radius) {
         const double x = dot(view.right, p - centre), y = dot(view.up, p - centre);
-        e.left = std::min(e.left, x), e.right = std::max(e.right, x);
-        e.bottom = std::min(e.bottom, y), e.top = std::max(e.top, y);
-    });
+        e.left = std::min(e.left, x - radius), e.right = std::max(e.right, x + radius);
+        e.bottom = std::min(e.bottom, y - radius), e.top = std::max(e.top, y + radius);
+    };
+    if (radii.empty()) for_drawn(vertices, faces, [&](Vec3 p) { take(p, 0); });
+    for (std::size_t v = 0; v < radii.size(); ++v)
+        if (const Vec3 p = load(vertices[v]); finite(p)) take(p, radii[v]);
     return e;
 }
 
@@ -104,17 +108,20 @@ Picture draw(Points vertices, Triangles faces, const std::vector<double>& values
     const std::vector<Viewport> viewports =
         viewports_of(options, labelled ? legend_height(options.width, options.height) : 0);
 
-    const std::vector<View> views = views_of(box.sides, options);
-    std::vector<Extent> extents;
-    extents.reserve(views.size());
-    for (const View& view : views) extents.push_back(extent_of(vertices, faces, view, box.centre));
-    const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
-
     const std::vector<double> unit = unit_normals(vertices, faces, normals, {options.run.threads, {}});
     std::vector<double> radii;
     if (faces.empty()) radii = disc_radii(vertices, part_of(options.run, 0, 0.5));
+    const bool one_place = faces.empty() && box.diagonal() == 0;
+
+    const std::vector<View> views = views_of(box.sides, options);
+    std::vector<Extent> extents;
+    extents.reserve(views.size());
+    const std::vector<double> none;
+    for (const View& view : views)
+        extents.push_back(extent_of(vertices, faces, one_place ? none : radii, view, box.centre));
+    const std::vector<Projection> projections = fit(views, extents, box.centre, viewports);
     // A single point has no scale: its disc fills a tenth of the picture.
-    if (faces.empty() && box.diagonal() == 0)
+    if (one_place)
         for (double& radius : radii) radius *= 0.05 * std::min(viewports[0].width, viewports[0].height);
 
     const Ramp ramp(picture.low, picture.high, options.diverging);

@@ -50,13 +50,15 @@ function literals(text) {
   return { lines: lines.join("\n"), size: bytes.length };
 }
 
-const page = await onePage("viewer.html");
-if (!page.includes("<!--gaussmap-data-->")) throw new Error("viewer.html: the place for the data is gone");
-const { lines, size } = literals(page);
-await mkdir(folder, { recursive: true });
-await writeFile(join(folder, "viewer.html"), page);
-await writeFile(
-  join(folder, "viewer_page.cpp"),
-  `// Made by viewer/build.mjs.\n#include "viewer_page.h"\n\nnamespace gaussmap {\n\nstd::string_view viewer_page() {\n` +
-    `    static constexpr char page[] =\n${lines};\n    return {page, ${size}};\n}\n\n}  // namespace gaussmap\n`,
-);
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  const page = await onePage("viewer.html");
+  if (!page.includes("<!--gaussmap-data-->")) throw new Error("viewer.html: the place for the data is gone");
+  const { lines, size } = literals(page);
+  await mkdir(folder, { recursive: true });
+  await writeFile(join(folder, "viewer.html"), page);
+  await writeFile(
+    join(folder, "viewer_page.cpp"),
+    `// Made by viewer/build.mjs.\n#include "viewer_page.h"\n\nnamespace gaussmap {\n\nstd::string_view viewer_page() {\n` +
+      `    static constexpr char page[] =\n${lines};\n    return {page, ${size}};\n}\n\n}  // namespace gaussmap\n`,
+  );
+}

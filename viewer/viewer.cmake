@@ -17,7 +17,7 @@ if(GAUSSMAP_NODE AND GAUSSMAP_NPM)
       message(WARNING "Built without the viewer: npm ci failed in ${viewer_folder}:\n${complaint}")
     endif()
   endif()
-  if(EXISTS ${installed})
+  if(EXISTS ${installed} AND NOT EMSCRIPTEN)  # the page in the browser draws by itself
     set(viewer_source ${PROJECT_BINARY_DIR}/viewer/viewer_page.cpp)
     file(GLOB_RECURSE viewer_inputs CONFIGURE_DEPENDS ${viewer_folder}/src/* ${viewer_folder}/*.html)
     add_custom_command(OUTPUT ${viewer_source}

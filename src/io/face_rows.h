@@ -16,7 +16,8 @@ class FaceRows {
     std::size_t count() const { return polygons_.empty() ? faces_.size() / 3 : polygons_.count(); }
     std::span<const std::int32_t> operator[](std::size_t i) const {
         if (polygons_.empty()) return {faces_.data() + 3 * i, 3};
-        return {polygons_.corners.data() + polygons_.offsets[i], polygons_.offsets[i + 1] - polygons_.offsets[i]};
+        return {polygons_.corners.data() + polygons_.offsets[i],
+                static_cast<std::size_t>(polygons_.offsets[i + 1] - polygons_.offsets[i])};
     }
 
   private:

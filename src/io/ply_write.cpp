@@ -26,7 +26,8 @@ struct Column {
     std::size_t length = 1;
 
     ValueRange values(std::size_t item) const {
-        return offsets ? ValueRange{offsets[item], offsets[item + 1]} : ValueRange{item * length, (item + 1) * length};
+        if (!offsets) return {item * length, (item + 1) * length};
+        return {static_cast<std::size_t>(offsets[item]), static_cast<std::size_t>(offsets[item + 1])};
     }
     const char* at(std::size_t value) const { return static_cast<const char*>(data) + value * step; }
 };

@@ -76,7 +76,7 @@ struct ValueRange {
 };
 inline ValueRange values_of(const Property& property, std::size_t i) {
     if (!property.list) return {i, i + 1};
-    return {property.offsets[i], property.offsets[i + 1]};
+    return {static_cast<std::size_t>(property.offsets[i]), static_cast<std::size_t>(property.offsets[i + 1])};
 }
 
 /// The same property for the items named by `rows`, in that order.

@@ -12,7 +12,7 @@ const fromViewer = createRequire(join(project, "viewer/package.json"));
 const { chromium } = fromViewer("playwright-core");
 export const axe = fromViewer.resolve("axe-core/axe.min.js");
 
-const program = resolve(process.env.GAUSSMAP ?? join(project, "build/release/gaussmap"));
+export const program = resolve(process.env.GAUSSMAP ?? join(project, "build/release/gaussmap"));
 export const shots = join(project, "build/browser");
 mkdirSync(shots, { recursive: true });
 export const folder = mkdtempSync(join(tmpdir(), "gaussmap-browser-"));

@@ -31,6 +31,8 @@ export class Stage {
   /** Called after each picture. */
   onDrawn: () => void = () => {};
 
+  private observer = new ResizeObserver(() => this.resize());
+
   constructor(readonly canvas: HTMLCanvasElement, scenes: Scene[]) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // the shaders' colours are those of the screen
@@ -60,7 +62,7 @@ export class Stage {
     }
     this.resize();
     this.reset();
-    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.observer.observe(canvas);
     canvas.addEventListener("webglcontextrestored", () => this.draw());
   }
 
@@ -112,6 +114,13 @@ export class Stage {
     this.linked = linked;
     if (linked) for (const p of this.panes) p.pose = this.panes[0]!.pose;
     this.draw();
+  }
+
+  /** Give back what the browser has few of. */
+  close(): void {
+    this.observer.disconnect();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   /** Until nothing moves for a while, objects too large to follow are drawn in part. */

@@ -18,6 +18,8 @@ import { showTip, tipOf } from "./tip";
 export interface Viewer {
   readonly stage: Stage;
   readonly state: State;
+  /** Leave the page to another viewer. */
+  close(): void;
 }
 
 const presets: Record<string, [number, number, number]> = {
@@ -26,6 +28,7 @@ const presets: Record<string, [number, number, number]> = {
 
 export function showPage(root: HTMLElement, data: PageData): Viewer {
   const { scenes } = data;
+  const shown = new AbortController();
   root.innerHTML = layout;
   const find = <T extends HTMLElement>(selector: string): T => root.querySelector<T>(selector)!;
   const canvas = find<HTMLCanvasElement>("canvas.picture"), panel = find<HTMLFormElement>(".panel");
@@ -162,7 +165,7 @@ export function showPage(root: HTMLElement, data: PageData): Viewer {
     stage.setColours(getComputedStyle(document.documentElement).getPropertyValue("--paper").trim(), isDark());
     recolour();
   }
-  prefersDark.addEventListener("change", showTheme);
+  prefersDark.addEventListener("change", showTheme, { signal: shown.signal });
 
   let remembering = 0;
   function remember(): void {
@@ -249,17 +252,17 @@ export function showPage(root: HTMLElement, data: PageData): Viewer {
     const typing = e.target instanceof HTMLSelectElement || (e.target instanceof HTMLInputElement && e.target.inputMode === "decimal");
     if (e.altKey || e.metaKey || e.ctrlKey || typing) return;
     keys[e.key.toLowerCase()]?.();
-  });
+  }, { signal: shown.signal });
   root.addEventListener("click", (e) => {
     const button = (e.target as HTMLElement).closest<HTMLElement>("button");
     if (button?.dataset["do"]) actions[button.dataset["do"]]!();
     if (button?.dataset["view"]) look(button.dataset["view"]);
-  });
+  }, { signal: shown.signal });
   panel.addEventListener("submit", (e) => e.preventDefault());
   panel.addEventListener("input", (e) => {
     const { name, value } = e.target as HTMLInputElement;
     if (name === "size") (state.size = 2 ** Number(value)), showParts();
-  });
+  }, { signal: shown.signal });
   panel.addEventListener("change", (e) => {
     const target = e.target as HTMLInputElement, { name, value, checked } = target;
     if (name === "field") choose(value);
@@ -270,7 +273,7 @@ export function showPage(root: HTMLElement, data: PageData): Viewer {
     else if (name === "linkCameras") (state.linkCameras = checked), stage.link(checked), showParts();
     else if (name === "linkRanges") (state.linkRanges = checked), showParts(), recolour();
     else if (name === "wire" || name === "hairs" || name === "boundary") (state[name] = checked), showParts(), showFacts();
-  });
+  }, { signal: shown.signal });
   function typed(end: "low" | "high", text: string): void {
     const range = { ...rangeOf(active), [end]: Number(text) };
     if (text.trim() && Number.isFinite(range[end]) && range.low < range.high) state.ranges[active] = range;
@@ -310,5 +313,13 @@ export function showPage(root: HTMLElement, data: PageData): Viewer {
   showParts();
   showTheme();
   root.dataset["ready"] = "true";
-  return { stage, state };
+  return {
+    stage,
+    state,
+    close() {
+      shown.abort();
+      clearTimeout(remembering);
+      stage.close();
+    },
+  };
 }
