@@ -11,7 +11,7 @@
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make bench-python    the package against the library, and against peers in Python
 #   make wasm            build/wasm/gaussmap.html: the page that measures in the browser
-#   make bench-browser   that page against the program on one thread (IN="a.ply b.ply": on these)
+#   make bench-browser   that page against the program on one thread, and how soon the viewer shows a picture (IN="a.ply b.ply")
 #   make bench-real      scans, outliers, sheets and edges: what the defaults say, into docs/real
 #   make paper           the paper's tables and pictures, made anew beside its peers, into docs/paper (QUICK=1: 3 minutes)
 #   make fuzz            feed the readers random files for FUZZ_SECONDS (default 60)
@@ -110,6 +110,7 @@ wasm: setup
 
 bench-browser: release wasm
 	GAUSSMAP=$(PROGRAM) node bench/browser/speed.mjs $(IN)
+	GAUSSMAP=$(PROGRAM) node bench/browser/first_picture.mjs $(IN)
 
 lint: setup
 	clang-format-14 --dry-run --Werror $(SOURCES)
