@@ -20,10 +20,10 @@ struct alignas(32) Boxes {
 
 /// A node without children.
 constexpr Boxes no_boxes() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double far = std::numeric_limits<double>::infinity();
     Boxes boxes{};
     for (int c = 0; c < children; ++c) {
-        for (int a = 0; a < 3; ++a) boxes.low[a][c] = infinity, boxes.high[a][c] = -infinity;
+        for (int a = 0; a < 3; ++a) boxes.low[a][c] = far, boxes.high[a][c] = -far;
         boxes.first[c] = nobody;
     }
     return boxes;
