@@ -78,6 +78,17 @@ class Row:
         self.seconds = float(seconds)
 
 
+def rows_of(text):
+    """The rows that a peer's program printed, as judge.h and judge.py do."""
+    return [Row(*fields) for fields in csv.reader(text.splitlines()) if len(fields) == 7]
+
+
+def best_jets(rows):
+    """The two best settings of CGAL's jets, as the program takes them: DEGREE:K."""
+    best = sorted(rows, key=lambda row: row.error)[:2]
+    return [row.parameter.replace("degree ", "").replace(" k ", ":") for row in best]
+
+
 class Bench:
     def __init__(self, build, quick):
         self.quick = quick
@@ -112,14 +123,13 @@ class Bench:
                 print(f"accuracy: {source.name} failed on {file.name}; no rows of it there", file=sys.stderr)
                 return []
             kept.write_text(done.stdout)
-        return [Row(*fields) for fields in csv.reader(kept.read_text().splitlines()) if len(fields) == 7]
+        return rows_of(kept.read_text())
 
     def jets(self, file, grid):
         source = SOURCE / "cloud_curvature/cgal_jets.cpp"
         command = [self.folder / "cgal_jets"]
         screened = self.rows(source, command, file, [str(SCREEN), *grid.split()])
-        best = sorted(screened, key=lambda row: row.error)[:2]
-        settings = [row.parameter.replace("degree ", "").replace(" k ", ":") for row in best]
+        settings = best_jets(screened)
         judged = str(QUICK_JUDGED if self.quick else 0)
         return self.rows(source, command, file, [judged, *settings]) if settings else []
 

@@ -4,29 +4,29 @@ import subprocess
 import sys
 
 
+def _installed(folder, wanted, what, *commands):
+    """Whether the commands have run for what is wanted now, in this folder; a word if they fail."""
+    stamp = folder / "installed.txt"
+    if stamp.exists() and stamp.read_text() == wanted:
+        return True
+    try:
+        for command in commands:
+            subprocess.run(command, check=True)
+        stamp.write_text(wanted)
+        return True
+    except (subprocess.CalledProcessError, OSError) as problem:
+        print(f"no peers of {what}, which did not install ({problem})", file=sys.stderr)
+        return False
+
+
 def python_of_peers(venv, wanted):
     """The Python of the folder `venv` with the packages of the file `wanted`, or None with a word."""
-    stamp = venv / "installed.txt"
-    if not stamp.exists() or stamp.read_text() != wanted.read_text():
-        try:
-            subprocess.run([sys.executable, "-m", "venv", venv], check=True)
-            subprocess.run([venv / "bin/pip", "install", "-q", "-r", wanted], check=True)
-            stamp.write_text(wanted.read_text())
-        except (subprocess.CalledProcessError, OSError) as problem:
-            print(f"no peers in Python, {wanted.name} did not install ({problem})", file=sys.stderr)
-            return None
-    return venv / "bin/python"
+    make = [sys.executable, "-m", "venv", venv], [venv / "bin/pip", "install", "-q", "-r", wanted]
+    return venv / "bin/python" if _installed(venv, wanted.read_text(), wanted.name, *make) else None
 
 
 def folder_of_npm(folder, package):
     """The folder with the npm package "NAME@VERSION" installed, or None with a word."""
-    stamp = folder / "installed.txt"
-    if not stamp.exists() or stamp.read_text() != package:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            subprocess.run(["npm", "install", "--silent", "--prefix", folder, package], check=True)
-            stamp.write_text(package)
-        except (subprocess.CalledProcessError, OSError) as problem:
-            print(f"no peer in JavaScript, {package} did not install ({problem})", file=sys.stderr)
-            return None
-    return folder
+    make = ["npm", "install", "--silent", "--prefix", folder, package]
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder if _installed(folder, package, package, make) else None

@@ -2,31 +2,15 @@
 
 import numpy as np
 
-TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uint": "<u4", "uchar": "u1"}
+import ply
 
 
 def read_shape(path):
     """(vertices n × 3, faces m × 3, normals n × 3, exact density n) of a binary PLY written by `surfaces`."""
-    with open(path, "rb") as file:
-        data = file.read()
-    end = data.index(b"end_header\n") + len(b"end_header\n")
-    counts, fields, element = {}, {}, None
-    for words in (line.split() for line in data[:end].decode().splitlines()):
-        if words[0] == "element":
-            element = words[1]
-            counts[element] = int(words[2])
-            fields[element] = []
-        elif words[0] == "property" and words[1] == "list":
-            fields[element] += [("corners", TYPES[words[2]]), (words[4], TYPES[words[3]], 3)]
-        elif words[0] == "property":
-            fields[element].append((words[2], TYPES[words[1]]))
-    vertex = np.frombuffer(data, fields["vertex"], counts["vertex"], end)
-    columns = [np.stack([vertex[name] for name in names], 1) for names in (("x", "y", "z"), ("nx", "ny", "nz"))]
-    faces = np.zeros((0, 3), np.int32)
-    if counts.get("face"):
-        face = np.frombuffer(data, fields["face"], counts["face"], end + vertex.nbytes)
-        faces = face[fields["face"][1][0]].astype(np.int32)
-    return columns[0], faces, columns[1], vertex["exact_density"].copy()
+    vertices, faces = ply.read(path)
+    normals = np.stack([vertices[name] for name in ("nx", "ny", "nz")], 1)
+    faces = np.zeros((0, 3), np.int32) if faces is None else faces
+    return ply.positions(vertices), faces, normals, vertices["exact_density"].copy()
 
 
 def report(peer, parameter, density, truth, seconds):

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+import ply  # noqa: E402
 from judge import read_shape  # noqa: E402
 
 
@@ -20,11 +21,8 @@ def main(path, out, k):
     cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(points))
     cloud.estimate_normals(open3d.geometry.KDTreeSearchParamKNN(int(k) + 1))  # Open3D counts the point itself
     cloud.orient_normals_consistent_tangent_plane(int(k))
-    columns = np.column_stack([points, np.asarray(cloud.normals), truth]).astype("<f8")
-    names = "x y z nx ny nz exact_density".split()
-    header = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}",
-              *(f"property double {name}" for name in names), "end_header", ""]
-    Path(out).write_bytes("\n".join(header).encode() + columns.tobytes())
+    nx, ny, nz = np.asarray(cloud.normals).T
+    ply.write(out, points, nx=nx, ny=ny, nz=nz, exact_density=truth)
 
 
 if __name__ == "__main__":

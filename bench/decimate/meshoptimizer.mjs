@@ -3,14 +3,12 @@
 // Mode "update" is simplifyWithUpdate, which moves the vertices that are kept; "keep" is simplify. Prints one line a result
 // as peers.py does.
 import { readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const require = createRequire(join(process.cwd(), 'package.json')); // the folder that npm installed it into
-const root = require.resolve.paths('meshoptimizer').map((folder) => join(folder, 'meshoptimizer'));
-const { MeshoptSimplifier } = await import(pathToFileURL(join(root[0], 'meshopt_simplifier.js')).href);
-const { version } = JSON.parse(readFileSync(join(root[0], 'package.json'), 'utf8'));
+const root = join(process.cwd(), 'node_modules/meshoptimizer'); // the folder that npm installed it into
+const { MeshoptSimplifier } = await import(pathToFileURL(join(root, 'meshopt_simplifier.js')).href);
+const { version } = JSON.parse(readFileSync(join(root, 'package.json'), 'utf8'));
 
 /// Positions and triangles; what else a line of a vertex holds (normals) is left.
 function readOff(path) {

@@ -3,7 +3,7 @@
 import math
 import subprocess
 
-from accuracy import APSS, JETS
+from accuracy import APSS, JETS, best_jets
 from runs import BENCH
 from table import Check, Table, Value, number
 
@@ -38,9 +38,7 @@ def jets(runs, file):
     """Jobs on all points: the settings shown always, and the two best of the grid on a part of the points."""
     program = runs.tools / "cgal_jets"
     screened = runs.peer_rows([[program, file, SCREENED, *JETS["clean"].split()]])[0]
-    two = sorted(screened, key=lambda row: row.error)[:2]
-    settings = [row.parameter.replace("degree ", "").replace(" k ", ":") for row in two]
-    return [program, file, 2500 if runs.quick else 0, *dict.fromkeys([*FIXED_JETS, *settings])]
+    return [program, file, 2500 if runs.quick else 0, *dict.fromkeys([*FIXED_JETS, *best_jets(screened)])]
 
 
 def put_peers(table, column, rms, pcl, vcm, of_jets, apss):

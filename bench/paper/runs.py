@@ -1,13 +1,12 @@
 """Runs of our program and of the peers' programs: nothing is kept from an earlier run."""
 
-import csv
 import json
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from accuracy import Row
+from accuracy import rows_of
 from environment import python_of_peers
 
 SOURCE = Path(__file__).resolve().parent
@@ -64,4 +63,4 @@ class Runs:
         if done.returncode != 0:
             print(f"paper: {Path(command[0]).name} failed; no rows of it", file=sys.stderr)
             return []
-        return [Row(*fields) for fields in csv.reader(done.stdout.splitlines()) if len(fields) == 7]
+        return rows_of(done.stdout)

@@ -44,7 +44,6 @@ class Shape(Geometry):
 
 
 def _shape(make: Any, *values: Any, jitter: float, noise: float, seed: int, noise_unit: str) -> Shape:
-
     made = make(*values, float(jitter), float(noise), whole("seed", seed, 0, 2**63 - 1), noise_unit)
     attributes = {"exact_density": made["density"], "k1": made["k1"], "k2": made["k2"]}
     return Shape(made["vertices"], made["faces"], made["normals"], attributes)
