@@ -31,7 +31,8 @@ std::vector<double> corrected_density(Points vertices, Triangles faces, Points u
         for (auto& corner : corners) corner[0] = mu0, corner[1] = mu1, corner[2] = mu2;
         return true;
     };
-    const std::vector<double> sums = scatter_faces<3>(faces, vertices.count, run, measures);
+    const std::vector<double> sums =
+        scatter_faces<3>(faces, vertices.count, chunk_faces(faces, vertices.count, run), run, measures);
     std::vector<double> density(vertices.count);
     for (std::size_t v = 0; v < density.size(); ++v) {
         const double mu0 = sums[3 * v], twice_h = sums[3 * v + 1] / mu0, k = sums[3 * v + 2] / mu0;

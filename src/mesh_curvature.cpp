@@ -15,6 +15,7 @@
 #include "parallel.h"
 #include "shape_operator.h"
 #include "vertex_density.h"
+#include "weighted_normals.h"
 
 namespace gaussmap {
 namespace {
@@ -52,8 +53,10 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     const bool fits = options.estimator != Estimator::dirichlet && options.estimator != Estimator::corrected;
     MeshCurvature result;
     auto start = Clock::now();
+    const FaceChunks chunks = chunk_faces(faces, vertices.count, {options.run.threads, {}});
     if (normals.empty()) {
-        result.normals = mesh_normals(vertices, faces, options.weights, part_of(options.run, 0, fits ? 0.05 : 0.5));
+        result.normals =
+            weighted_normals(vertices, faces, chunks, options.weights, part_of(options.run, 0, fits ? 0.05 : 0.5));
     } else {
         result.normals.assign(normals.xyz, normals.xyz + 3 * normals.count);
         normalize(result.normals, options.run);
@@ -69,7 +72,7 @@ MeshCurvature mesh_curvature(Points vertices, Triangles faces, Points normals, c
     const auto sums = std::make_unique_for_overwrite<double[]>(2 * vertices.count);
     result.kappa.resize(faces.count);
     result.face_density.resize(faces.count);
-    fused_pass(vertices, faces, result.normals, sums.get(), result.kappa.data(), result.face_density.data(),
+    fused_pass(vertices, faces, chunks, result.normals, sums.get(), result.kappa.data(), result.face_density.data(),
                part_of(options.run, 0.5, options.tensor ? 0.7 : 1));
     count_faces(result);
     if (options.estimator == Estimator::corrected) {

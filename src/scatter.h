@@ -11,34 +11,39 @@
 
 namespace gaussmap {
 
-/// N sums a vertex. `values(face, corners)` fills double corners[3][N] and returns whether the face adds anything.
-/// Contributions are added in ascending order of the faces for any number of threads (first_touch.h).
-/// \throw std::invalid_argument at an index outside [0, vertices).
+constexpr std::size_t scatter_batch = 64;
+
+/// N sums a vertex. `values(begin, end, corners)` fills double corners[end − begin][3][N] for the faces [begin, end),
+/// at most `scatter_batch`; all 0 where a face adds nothing. Contributions are added in ascending order of the faces
+/// for any number of threads (first_touch.h). \throw std::invalid_argument at an index outside [0, vertices).
+/// \param chunks  of the faces.
 template <int N, class Values>
-std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const Execution& run, Values&& values) {
+std::vector<double> scatter_batches(Triangles faces, std::size_t vertices, const FaceChunks& chunks,
+                                    const Execution& run, Values&& values) {
     struct Late {
         std::int32_t vertex;
         double value[N];
     };
     constexpr std::size_t stretch = 1 << 14;
-    const FaceChunks chunks = chunk_faces(faces, vertices, run);
     std::vector<double> sums(N * vertices, 0.0);
     std::vector<std::vector<Late>> late(chunks.count());
     const bool alone = chunks.count() == 1;
 
     const auto work = [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-        double corners[3][N];
-        for (std::size_t f = begin; f < end; ++f) {
-            if (!values(f, corners)) continue;
-            for (int corner = 0; corner < 3; ++corner) {
-                const std::int32_t vertex = faces[f][corner];
+        double corners[scatter_batch][3][N];
+        for (; begin < end; begin += scatter_batch) {
+            const std::size_t stop = std::min(end, begin + scatter_batch);
+            values(begin, stop, corners);
+            const double* value = corners[0][0];
+            for (std::size_t i = 3 * begin; i < 3 * stop; ++i, value += N) {
+                const std::int32_t vertex = faces.abc[i];
                 if (alone || chunks.owner[vertex] == chunk) {
                     double* sum = &sums[N * static_cast<std::size_t>(vertex)];
-                    for (int i = 0; i < N; ++i) sum[i] += corners[corner][i];
+                    for (int n = 0; n < N; ++n) sum[n] += value[n];
                 } else {
                     Late& l = late[chunk].emplace_back();
                     l.vertex = vertex;
-                    for (int i = 0; i < N; ++i) l.value[i] = corners[corner][i];
+                    std::copy_n(value, N, l.value);
                 }
             }
         }
@@ -60,6 +65,19 @@ std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const E
         for (const Late& l : list)
             for (int i = 0; i < N; ++i) sums[N * static_cast<std::size_t>(l.vertex) + i] += l.value[i];
     return sums;
+}
+
+/// The same, a face at a time: `values(face, corners)` fills double corners[3][N] and returns whether the face adds
+/// anything.
+template <int N, class Values>
+std::vector<double> scatter_faces(Triangles faces, std::size_t vertices, const FaceChunks& chunks, const Execution& run,
+                                  Values&& values) {
+    return scatter_batches<N>(faces, vertices, chunks, run,
+                              [&](std::size_t begin, std::size_t end, double(*corners)[3][N]) {
+                                  for (std::size_t f = begin; f < end; ++f)
+                                      if (!values(f, corners[f - begin]))
+                                          std::fill_n(corners[f - begin][0], 3 * N, 0.0);
+                              });
 }
 
 }  // namespace gaussmap

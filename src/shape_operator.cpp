@@ -96,7 +96,8 @@ PrincipalCurvatures vertex_tensor(Points vertices, Triangles faces, Points unit_
         }
         return true;
     };
-    const std::vector<double> sums = scatter_faces<4>(faces, vertices.count, part_of(run, 0, 0.8), parts);
+    const std::vector<double> sums =
+        scatter_faces<4>(faces, vertices.count, chunk_faces(faces, vertices.count, run), part_of(run, 0, 0.8), parts);
     PrincipalCurvatures tensor = undefined_tensor(vertices.count);
     for_blocks(vertices.count, grain, part_of(run, 0.8, 1), [&](std::size_t, std::size_t v, std::size_t last) {
         for (; v < last; ++v) {

@@ -12,7 +12,7 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t stretch = 1 << 12;  // faces a kernel call
-constexpr std::size_t vertex_block = 1 << 16;
+constexpr std::size_t vertex_block = 1 << 12;
 
 const FusedKernel& best_kernel() {
 #ifdef GAUSSMAP_X86
@@ -42,10 +42,9 @@ std::vector<SetAside> run_chunk(const FusedKernel& kernel, FusedPass pass, Trian
 
 }  // namespace
 
-void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
-                double* face_density, const Execution& run) {
+void fused_pass(Points vertices, Triangles faces, const FaceChunks& chunks, Points unit_normals, double* sums,
+                double* face_kappa, double* face_density, const Execution& run) {
     check_count("normals", unit_normals.count, vertices.count, "vertices");
-    const FaceChunks chunks = chunk_faces(faces, vertices.count, run);
     const FusedKernel& kernel = best_kernel();
     FusedPass pass{vertices.xyz, unit_normals.xyz, faces.abc, sums, face_kappa, face_density, nullptr, 0, nullptr};
     if (chunks.count() == 1) {
@@ -86,7 +85,8 @@ void divide_sums(double* sums, std::size_t vertices, const Execution& run) {
 
 void vertex_density(Points vertices, Triangles faces, Points unit_normals, double* density_and_area,
                     const Execution& run) {
-    fused_pass(vertices, faces, unit_normals, density_and_area, nullptr, nullptr, run);
+    fused_pass(vertices, faces, chunk_faces(faces, vertices.count, run), unit_normals, density_and_area, nullptr,
+               nullptr, run);
     divide_sums(density_and_area, vertices.count, run);
 }
 

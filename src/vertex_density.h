@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "first_touch.h"
 #include "gaussmap/types.h"
 
 namespace gaussmap {
@@ -41,8 +42,8 @@ extern const FusedKernel fused_kernel_avx2;
 
 /// Sums for all vertices (2 each, room given), and kappa and density of every face unless null.
 /// \throw std::invalid_argument at an index outside the vertices.
-void fused_pass(Points vertices, Triangles faces, Points unit_normals, double* sums, double* face_kappa,
-                double* face_density, const Execution& run);
+void fused_pass(Points vertices, Triangles faces, const FaceChunks& chunks, Points unit_normals, double* sums,
+                double* face_kappa, double* face_density, const Execution& run);
 
 /// The sums of the vertices become density (NaN where undefined) and area, in place.
 void divide_sums(double* sums, std::size_t vertices, const Execution& run);

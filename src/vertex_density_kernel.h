@@ -1,6 +1,5 @@
-// The fused pass over triangles, W at a time, for one instruction set. Included by vertex_density_<set>.cpp alone, each
-// compiled for its set; nothing here may have external linkage but the entry that each defines, or the linker could
-// pick a copy that the machine cannot run. Every set rounds every operation alike, so all give the same bits.
+// The fused pass over triangles, W at a time, for one instruction set (triangle_lanes.h). Included by
+// vertex_density_<set>.cpp alone; nothing here has external linkage but the entry that each defines.
 //
 // Per triangle abc with unit normals n (docs/method.md, eq. (3)):
 //   2A = |(b − a) × (c − a)|,   S = Σ_i d_i |n_j − n_k|²,   d_i the dot product of the two edges leaving corner i,
@@ -8,93 +7,12 @@
 // The sums hold S / 2A and 2A, twice each, which leaves their quotient, the density, as it is.
 #pragma once
 
-#ifdef __SSE2__
-#include <immintrin.h>
-#endif
-
 #include "degenerate.h"
+#include "triangle_lanes.h"
 #include "vertex_density.h"
 
 namespace gaussmap {
 namespace {
-
-// W doubles, and W/2 pairs of doubles as they lie in memory.
-template <int W>
-struct Lanes {
-    typedef double Real __attribute__((vector_size(8 * W)));
-    typedef long long Mask __attribute__((vector_size(8 * W)));
-};
-typedef double Pair __attribute__((vector_size(16)));
-typedef double PairInMemory __attribute__((vector_size(16), aligned(8), may_alias));
-
-inline Pair load_pair(const double* p) {
-    return *reinterpret_cast<const PairInMemory*>(p);
-}
-
-#define GAUSSMAP_INLINE inline __attribute__((always_inline))
-
-// The pairs at p[0] and p[2] side by side; for two lanes the one at p[0].
-template <int W>
-GAUSSMAP_INLINE typename Lanes<W>::Real join(const double* const* p, int offset) {
-    if constexpr (W == 2)
-        return load_pair(p[0] + offset);
-    else
-        return __builtin_shufflevector(load_pair(p[0] + offset), load_pair(p[2] + offset), 0, 1, 2, 3);
-}
-
-// Even (odd) entries of a and b in turn: a0 b0 a2 b2 … (a1 b1 a3 b3 …).
-template <int W, class Real>
-GAUSSMAP_INLINE Real evens(Real a, Real b) {
-    if constexpr (W == 2)
-        return __builtin_shufflevector(a, b, 0, 2);
-    else
-        return __builtin_shufflevector(a, b, 0, 4, 2, 6);
-}
-template <int W, class Real>
-GAUSSMAP_INLINE Real odds(Real a, Real b) {
-    if constexpr (W == 2)
-        return __builtin_shufflevector(a, b, 1, 3);
-    else
-        return __builtin_shufflevector(a, b, 1, 5, 3, 7);
-}
-
-template <int W>
-struct Vectors {
-    typename Lanes<W>::Real x, y, z;
-};
-
-// The three coordinates of W vertices, transposed in registers. Reads 24 bytes a vertex, nothing beyond.
-template <int W>
-GAUSSMAP_INLINE Vectors<W> gather(const double* xyz, const std::int32_t* index) {
-    const double* p[W];
-    for (int l = 0; l < W; ++l) p[l] = xyz + 3 * static_cast<std::size_t>(index[3 * l]);
-    const auto xy_even = join<W>(p, 0), xy_odd = join<W>(p + 1, 0);
-    const auto yz_even = join<W>(p, 1), yz_odd = join<W>(p + 1, 1);
-    return {evens<W>(xy_even, xy_odd), odds<W>(xy_even, xy_odd), odds<W>(yz_even, yz_odd)};
-}
-
-template <int W>
-GAUSSMAP_INLINE Vectors<W> minus(const Vectors<W>& a, const Vectors<W>& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <int W>
-GAUSSMAP_INLINE typename Lanes<W>::Real dot(const Vectors<W>& a, const Vectors<W>& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-// Compilers do not make one instruction of a loop of square roots over lanes.
-template <int W, class Real>
-GAUSSMAP_INLINE Real square_root(Real a) {
-#ifdef __AVX2__
-    if constexpr (W == 4) return (Real)_mm256_sqrt_pd((__m256d)a);
-#endif
-#ifdef __SSE2__
-    if constexpr (W == 2) return (Real)_mm_sqrt_pd((__m128d)a);
-#endif
-    Real root;
-    for (int l = 0; l < W; ++l) root[l] = __builtin_sqrt(a[l]);
-    return root;
-}
 
 template <int W>
 struct Energies {
@@ -112,8 +30,8 @@ GAUSSMAP_INLINE Energies<W> energies(const double* xyz, const double* normals, c
     const Real da = dot<W>(ab, ac), db = -dot<W>(ab, bc), dc = dot<W>(ac, bc);
     const auto nab = minus<W>(nb, na), nac = minus<W>(nc, na), nbc = minus<W>(nc, nb);
     const Real s = da * dot<W>(nbc, nbc) + db * dot<W>(nac, nac) + dc * dot<W>(nab, nab);
-    const Vectors<W> cross = {ab.y * ac.z - ab.z * ac.y, ab.z * ac.x - ab.x * ac.z, ab.x * ac.y - ab.y * ac.x};
-    const Real cross_squared = dot<W>(cross, cross);
+    const auto normal = cross<W>(ab, ac);
+    const Real cross_squared = dot<W>(normal, normal);
     const Real half_squares = da + db + dc;
     const Real threshold = no_area_ratio * (half_squares * half_squares);
     const Real huge = Real{} + __DBL_MAX__, zero = Real{};
@@ -221,8 +139,6 @@ inline void divide(double* sums, std::size_t count) {
     sums[2 * v] = sums[2 * v + 1] > 0 ? quotient : undefined[0];
     sums[2 * v + 1] *= 0.5;
 }
-
-#undef GAUSSMAP_INLINE
 
 }  // namespace
 }  // namespace gaussmap

@@ -11,7 +11,7 @@ import time
 import gaussmap
 
 
-def seconds_of(threads, build, mesh, geometry, rounds=21):
+def seconds_of(threads, build, mesh, geometry, rounds=101):
     child = subprocess.Popen(
         [f"{build}/bench/python_call", mesh, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
