@@ -50,7 +50,7 @@ std::vector<double> interpolated_normals(const Geometry& from, const Decimation&
         std::array<double, 3> n{};
         for (std::size_t axis = 0; axis < 3; ++axis)
             n[axis] = interpolated(from, point, [&](std::size_t v) { return from.normals[3 * v + axis]; });
-        const double length = std::hypot(n[0], n[1], n[2]);
+        const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         for (const double value : n) normals.push_back(value / length);
     }
     return normals;

@@ -10,6 +10,9 @@
 namespace gaussmap {
 namespace {
 
+/// From a corner on a seam towards the middle of its face, as a part of the way: little beside the faces of the input.
+constexpr double side_step = 1e-3;
+
 /// The point of the input's face f nearest to p, the corners as the input has them.
 SurfacePoint on_face(const DecimationInput& in, std::int32_t f, Vec3 p) {
     const std::int32_t* v = &in.corners[3 * f];
@@ -118,11 +121,16 @@ std::vector<SurfacePoint> corner_sources(const DecimationInput& in, const RingMe
         const auto position = [&](std::size_t i, int k) {
             return coarse.position[coarse.vertex[3 * coarse_order[i] + k]];
         };
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3 centre = (1.0 / 3) * (position(i, 0) + position(i, 1) + position(i, 2));
             for (int k = 0; k < 3; ++k) {
-                const Vec3 p = position(i, k);
+                Vec3 p = position(i, k);
+                // A chart may touch itself along a seam: a step into the face tells the sides apart.
+                if (coarse.kind[coarse.vertex[3 * coarse_order[i] + k]] != VertexKind::free)
+                    p = p + side_step * (centre - p);
                 queries.insert(queries.end(), {p.x, p.y, p.z});
             }
+        }
         const std::vector<std::int32_t> element = ClosestIndex(points, corners, run).closest(queries, run).element;
         for (std::size_t i = begin; i < end; ++i)
             for (int k = 0; k < 3; ++k)

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from gaussmap import _gaussmap
+from gaussmap import _gaussmap, _texture
 from gaussmap._arrays import AnyArray, Floats, Ints, one_of, rows, thread_count, whole
-from gaussmap._geometry import Geometry
+from gaussmap._geometry import Geometry, triangulate
 from gaussmap._progress import Progress, reported
 from gaussmap._results import count
 from gaussmap._results import Result
@@ -66,7 +66,7 @@ def _carried(at: SurfacePoints, faces: Ints, attributes: dict[str, AnyArray]) ->
 
 def _unit(normals: Floats) -> Floats:
     with np.errstate(invalid="ignore", divide="ignore"):
-        out: Floats = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+        out: Floats = normals / np.sqrt(normals[:, 0] ** 2 + normals[:, 1] ** 2 + normals[:, 2] ** 2)[:, None]
     return out
 
 
@@ -126,7 +126,8 @@ def decimate(
     :param objective: the distance that "best" makes small: "both", "rms" or "max".
     :param fast: "best" without the fit.
     :param feature_angle: in degrees: edges bent by more are features, along which collapses run.
-    :param seams: (m, 3) of any type: not 0 where the side opposite to the corner is a seam, kept as borders are.
+    :param seams: (m, 3) of any type: not 0 where the side opposite to the corner is a seam, kept as borders are. By default
+        the seams of texture coordinates (`face_attributes["texcoord"]`), which are carried over on their side.
     :raises ValueError: no target or several, an index outside [0, n), options out of their range.
 
     Time O(m log m); the same bits for any number of threads.
@@ -138,22 +139,26 @@ def decimate(
     if sum(target is not None for target in (faces, ratio, error)) != 1:
         raise ValueError("one of faces, ratio and error is wanted, as the target")
     one_of("method", method, ("best", "qem", "edge"))
+    if isinstance(x, Geometry) and x.polygons is not None:
+        x = triangulate(x)
     subject, triangles = _mesh(x, faces_of)
-    polygons = getattr(subject.source, "polygons", None)
     if ratio is not None and not 0 < ratio <= 1:
         raise ValueError(f"ratio = {ratio} is outside (0, 1]")
     if error is not None and not 0 < error < np.inf:
         raise ValueError(f"error = {error} is not above 0")
     target = whole("faces", faces, 0) if faces is not None else int((ratio or 0) * len(triangles))
+    texture = _texture.of_corners(subject.face_attributes)
     if seams is not None:
         seams = np.ascontiguousarray(np.asarray(seams) != 0, np.uint8)
-    carries = subject.normals is not None or bool(subject.attributes)
+    elif texture is not None:
+        seams = _texture.seams(triangles, texture)
+    carries = subject.normals is not None or bool(subject.attributes) or texture is not None
     with reported(progress, "decimating") as report:
         made = _gaussmap.decimate(
             subject.vertices, triangles, target, error or 0.0, method, objective, weights, fast, preserve_boundary,
             lock_border, feature_angle, allow_topology, carries, seams, thread_count(threads), report,
         )  # fmt: skip
-    made.pop("corner_source")
+    corner_source = made.pop("corner_source")
     source = made.pop("vertex_source")
     bound = made.pop("error_bound")
     out = Decimation(**made, faces_in=len(triangles), error_bound=None if error is None else bound)
@@ -162,8 +167,13 @@ def decimate(
         out.attributes = _carried(out.vertex_source, triangles, subject.attributes)
         if subject.normals is not None:
             out.normals = _unit(_weighted(out.vertex_source, triangles, subject.normals))
-    of = out.face_source if polygons is None else polygons.of[out.face_source]
-    out.face_attributes = {name: np.asarray(values)[of] for name, values in subject.face_attributes.items()}
+    out.face_attributes = {
+        name: np.asarray(values)[out.face_source] for name, values in subject.face_attributes.items()
+    }
+    if texture is not None and source is not None:
+        corners = source if corner_source is None else corner_source
+        face, weights = (values[out.faces.reshape(-1)] if corner_source is None else values for values in corners)
+        out.face_attributes[_texture.NAME] = _texture.interpolated(face, weights, texture)
     if isinstance(subject.source, Geometry):
         out.vertex_type, out.normal_type = subject.source.vertex_type, subject.source.normal_type
         out.comments = list(subject.source.comments)
