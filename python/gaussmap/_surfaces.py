@@ -171,9 +171,9 @@ def decimate(
         name: np.asarray(values)[out.face_source] for name, values in subject.face_attributes.items()
     }
     if texture is not None and source is not None:
-        corners = source if corner_source is None else corner_source
-        face, weights = (values[out.faces.reshape(-1)] if corner_source is None else values for values in corners)
-        out.face_attributes[_texture.NAME] = _texture.interpolated(face, weights, texture)
+        corners = made["faces"].reshape(-1)
+        at = SurfacePoints(*(corner_source or (values[corners] for values in source)))
+        out.face_attributes[_texture.NAME] = _texture.interpolated(at.face, at.weights, texture)
     if isinstance(subject.source, Geometry):
         out.vertex_type, out.normal_type = subject.source.vertex_type, subject.source.normal_type
         out.comments = list(subject.source.comments)
