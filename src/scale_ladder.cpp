@@ -17,6 +17,7 @@
 #include "pyramid.h"
 #include "rung_fits.h"
 #include "shape_tensor.h"
+#include "window_bias.h"
 
 namespace gaussmap {
 namespace {
@@ -346,7 +347,8 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     for (std::size_t l = levels.size() - 1; l > 0; --l)
         refine(levels[l], measured[l], levels[l - 1], measured[l - 1], {run.threads, {}});
     borrow_on_ladder(levels.front(), measured.front(), run);
-    const Measured& lowest = measured.front();
+    Measured& lowest = measured.front();
+    add_window_bias(graph, lowest, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
         if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.risk[i]);
     result.density = lowest.density, result.normal = lowest.normal;

@@ -5,6 +5,7 @@
 
 #include "clouds.h"
 #include "gaussmap/curvature.h"
+#include "gaussmap/surfaces.h"
 
 using namespace gaussmap;
 using support::Cloud;
@@ -198,6 +199,21 @@ TEST(CloudAuto, NoisyTorus) {
     EXPECT_LT(error, fan / 3) << "where fans with the exact normals have " << fan;
     EXPECT_GT(covered(result, torus.density), 0.9);
     EXPECT_GT(*std::max_element(result.choice.begin(), result.choice.end()), 16) << "the ladder is used";
+}
+
+TEST(CloudAuto, ConfidenceKnowsWhatWindowsSmoothAway) {
+    // No window tells the noise from waves as short as these, and each smooths some of them away.
+    SurfaceOptions moved;
+    moved.jitter = 0.25, moved.noise = 0.005, moved.noise_unit = NoiseUnit::diagonal;
+    const Surface surface = waves(1, 1, 0.05, 0.5, 64, 64, moved);
+    const CloudCurvature result = measure(surface.vertices);
+    EXPECT_GT(covered(result, surface.density), 0.85);
+    // Not by being large.
+    Array error = result.error;
+    std::nth_element(error.begin(), error.begin() + static_cast<std::ptrdiff_t>(error.size() / 2), error.end());
+    const double mean = std::accumulate(surface.density.begin(), surface.density.end(), 0.0) /
+                        static_cast<double>(surface.density.size());
+    EXPECT_LT(error[error.size() / 2], 0.5 * mean);
 }
 
 TEST(CloudAuto, Rotations) {
