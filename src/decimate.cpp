@@ -14,6 +14,7 @@
 #include "clock.h"
 #include "decimation_input.h"
 #include "decimation_sources.h"
+#include "face_boxes.h"
 #include "gaussmap/curvature.h"
 #include "gaussmap/distance.h"
 #include "greedy_collapse.h"
@@ -157,7 +158,8 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
     const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;
-    if (fitted) bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    const FaceBoxes fine = face_boxes(in.positions, in.corners, {options.run.threads, {}});
+    if (fitted) bring_nearer(coarse, in, fine, joined, options.objective, part_of(options.run, 0.5, 0.95));
     watch.add_to(out.seconds_fit);
 
     for (const Vec3 q : coarse.position) {
@@ -167,11 +169,11 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
     if (options.sources) {
         out.vertex_source =
-            fitted ? vertex_sources(in, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
+            fitted ? vertex_sources(in, fine, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
         if (!options.seams.empty()) {
-            RingMesh fine(in.positions, in.corners);
-            tag_seams(fine, in, options.seams);
-            out.corner_source = corner_sources(in, fine, coarse, {options.run.threads, {}});
+            RingMesh seamed(in.positions, in.corners);
+            tag_seams(seamed, in, options.seams);
+            out.corner_source = corner_sources(in, seamed, coarse, {options.run.threads, {}});
         }
     }
     out.faces = std::move(coarse.vertex);

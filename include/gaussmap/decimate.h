@@ -12,8 +12,8 @@ namespace gaussmap {
 
 enum class DecimationMethod {
     /// Collapses by the quadrics of the surface as it is; then the vertices that are left are fitted to samples of the
-    /// original, sides are flipped, vertices go from where they are little needed to where they help, and the greatest
-    /// distances are brought down one by one. Section "Decimation" of docs/method.md.
+    /// original, sides are flipped, and the greatest distances are brought down one by one. Section "Decimation" of
+    /// docs/method.md.
     best,
     /// Quadric error metric, optimal placement; quadrics weigh by the total curvature (the paper's second pipeline).
     /// Without weights: Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997.
