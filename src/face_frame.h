@@ -12,6 +12,7 @@ namespace gaussmap {
 /// without area has none.
 class FaceFrame {
   public:
+    FaceFrame() = default;
     FaceFrame(Vec3 a, Vec3 b, Vec3 c) : corner{a, b, c} {
         const Vec3 n = cross(b - a, c - a);
         const double nn = squared(n);
@@ -41,7 +42,7 @@ class FaceFrame {
                h < w[2] * w[2] * altitude_[2];
     }
 
-    std::array<Vec3, 3> corner;
+    std::array<Vec3, 3> corner{};
     Vec3 normal;  ///< of unit length, or 0
 
   private:

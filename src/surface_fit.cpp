@@ -15,10 +15,10 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1 << 12, faces_grain = 1 << 9;
-constexpr double overstep = 1.6;  ///< of a move that by itself is about half of what it could be
-constexpr double pull = 1e-3;     ///< towards no move, where the samples leave a direction free
-constexpr double smooth = 0.998;  ///< of the length of the normals of a vertex added up; below, the surface bends there
-constexpr double astray = 5;      ///< how much more than the fine surface a vertex that is far from it counts
+constexpr double overstep = 1.6;    ///< of a move that by itself is about half of what it could be
+constexpr double pull = 1e-3;       ///< towards no move, where the samples leave a direction free
+constexpr double straight = 0.998;  ///< of a vertex whose faces lie about in one plane: some 7° off on either side
+constexpr double astray = 5;        ///< how much more than the fine surface a vertex that is far from it counts
 
 FaceFrame frame_of(const RingMesh& mesh, std::int32_t f) {
     const std::int32_t* v = &mesh.vertex[3 * f];
@@ -72,75 +72,95 @@ template <class Start>
 void assign_first(const RingMesh& mesh, FitSamples& samples, const Execution& run, Start&& start) {
     samples.face.assign(samples.point.size(), -1);
     for_blocks(samples.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
-        for (std::int32_t before = -1; i < end; ++i) {
+        std::int32_t before = -1;
+        FaceFrame frame;
+        for (; i < end; ++i) {
             const std::int32_t v = start(i);
             if (v < 0) continue;
-            Walk walk(mesh, samples.point[i]);
+            const Vec3 p = samples.point[i];
             // The one before is near: most often its face will do, if it is at the vertex.
-            if (before >= 0 &&
-                (mesh.vertex[3 * before] == v || mesh.vertex[3 * before + 1] == v || mesh.vertex[3 * before + 2] == v))
-                walk.look(before);
-            if (walk.face < 0 || !walk.settled()) {
-                walk.look_around(v);
-                if (walk.face < 0) continue;
-                walk.descend();
+            const std::int32_t* e = before < 0 ? nullptr : &mesh.vertex[3 * before];
+            if (e && (e[0] == v || e[1] == v || e[2] == v) && frame.settled(frame.foot(p))) {
+                samples.face[i] = before;
+                continue;
             }
-            before = samples.face[i] = walk.face;
+            Walk walk(mesh, p);
+            walk.look_around(v);
+            if (walk.face < 0) continue;
+            walk.descend();
+            if (walk.face != before) before = walk.face, frame = frame_of(mesh, before);
+            samples.face[i] = before;
         }
     });
+}
+
+/// Vertices whose normal is shorter than those of their faces laid end to end, as where there are creases.
+std::vector<std::int32_t> bent_vertices(const DecimationInput& in) {
+    std::vector<Vec3> normal(in.positions.size());
+    std::vector<double> lengths(in.positions.size(), 0);
+    for (std::size_t c = 0; c < in.corners.size(); c += 3) {
+        const std::int32_t* v = &in.corners[c];
+        const Vec3 a = in.positions[v[0]], n = cross(in.positions[v[1]] - a, in.positions[v[2]] - a);
+        const double l = length(n);
+        for (int k = 0; k < 3; ++k) normal[v[k]] = normal[v[k]] + n, lengths[v[k]] += l;
+    }
+    std::vector<std::int32_t> bent;
+    for (std::size_t v = 0; v < normal.size(); ++v)
+        if (length(normal[v]) < straight * lengths[v]) bent.push_back(static_cast<std::int32_t>(v));
+    return bent;
 }
 
 }  // namespace
 
 AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32_t>& joined, const RingMesh& coarse,
                          const Execution& run) {
+    const std::vector<std::int32_t> bent = bent_vertices(in);
     AreaSamples out;
     const std::size_t n = in.corners.size() / 3;
+    out.point.reserve(n + bent.size());
     out.point.resize(n);
-    out.area.resize(n);
-    std::vector<Vec3> normal(in.positions.size());
-    std::vector<float> area(in.positions.size());
-    for (std::size_t f = 0; f < n; ++f) {
-        const std::int32_t* v = &in.corners[3 * f];
-        const Vec3 a = in.positions[v[0]], b = in.positions[v[1]], c = in.positions[v[2]];
-        const Vec3 twice = cross(b - a, c - a);
-        out.point[f] = 1.0 / 3 * (a + b + c);
-        out.area[f] = static_cast<float>(0.5 * length(twice));
-        for (int k = 0; k < 3; ++k) normal[v[k]] = normal[v[k]] + twice, area[v[k]] += out.area[f];
+    out.area.resize(n + bent.size());
+    for_blocks(n, grain, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
+        for (; f < end; ++f) {
+            const std::int32_t* v = &in.corners[3 * f];
+            const Vec3 a = in.positions[v[0]], b = in.positions[v[1]], c = in.positions[v[2]];
+            out.point[f] = 1.0 / 3 * (a + b + c);
+            out.area[f] = static_cast<float>(0.5 * length(cross(b - a, c - a)));
+        }
+    });
+    if (!bent.empty()) {
+        // Exact for quadratics: a twelfth of the area at each corner, the rest at the centre.
+        std::vector<std::int32_t> sample(in.positions.size(), -1);
+        for (const std::int32_t v : bent) {
+            sample[v] = static_cast<std::int32_t>(out.point.size());
+            out.point.push_back(in.positions[v]);
+        }
+        for (std::size_t f = 0; f < n; ++f) {
+            const float share = out.area[f] / 12;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (const std::int32_t at = sample[in.corners[3 * f + k]]; at >= 0)
+                    out.area[at] += share, out.area[f] -= share;
+        }
     }
-    std::vector<std::int32_t> sharp, sample(in.positions.size(), -1);
-    for (std::size_t v = 0; v < normal.size(); ++v) {
-        if (length(normal[v]) >= 2 * smooth * area[v]) continue;
-        sample[v] = static_cast<std::int32_t>(out.point.size());
-        sharp.push_back(static_cast<std::int32_t>(v));
-        out.point.push_back(in.positions[v]);
-        out.area.push_back(0);
-    }
-    for (std::size_t f = 0; f < n; ++f) {
-        const float share = out.area[f] / 12;
-        for (int k = 0; k < 3; ++k)
-            if (const std::int32_t at = sample[in.corners[3 * f + k]]; at >= 0)
-                out.area[at] += share, out.area[f] -= share;
-    }
-    assign_first(coarse, out, run, [&](std::size_t i) { return joined[i < n ? in.corners[3 * i] : sharp[i - n]]; });
+    assign_first(coarse, out, run, [&](std::size_t i) { return joined[i < n ? in.corners[3 * i] : bent[i - n]]; });
     out.anchor.assign(coarse.first.size(), 0);
     for (std::size_t c = in.corners.size(); c-- > 0;)
         if (const std::int32_t v = joined[in.corners[c]]; v >= 0) out.anchor[v] = static_cast<std::int32_t>(c / 3);
     return out;
 }
 
-FitSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
-                          const Execution& run) {
-    FitSamples out;
+VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
+                             const Execution& run) {
+    VertexSamples out;
     out.point = in.positions;
     out.face.assign(out.point.size(), -1);
-    std::vector<double> squared(out.point.size(), HUGE_VAL);
+    out.squared_distance.assign(out.point.size(), HUGE_VAL);
     for (std::size_t c = 0; c < in.corners.size(); ++c) {
         const std::int32_t v = in.corners[c], f = centres.face[c / 3];
         if (f < 0 || f == out.face[v]) continue;
         Walk walk(coarse, out.point[v]);
         walk.look(f);
-        if (walk.hit.squared < squared[v]) squared[v] = walk.hit.squared, out.face[v] = f;
+        if (walk.hit.squared < out.squared_distance[v]) out.squared_distance[v] = walk.hit.squared, out.face[v] = f;
     }
     for_blocks(out.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
         for (; i < end; ++i) {
@@ -148,7 +168,7 @@ FitSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres,
             Walk walk(coarse, out.point[i]);
             walk.look(out.face[i]);
             walk.descend();
-            out.face[i] = walk.face;
+            out.face[i] = walk.face, out.squared_distance[i] = walk.hit.squared;
         }
     });
     return out;
@@ -205,20 +225,29 @@ FaceSamples by_face(const FitSamples& samples, std::size_t faces) {
 
 namespace {
 
-/// What the samples of a face ask of one of its corners.
+/// What the samples of a face ask of one of its corners. Single precision will do: it is a step, taken again.
 struct Wish {
-    Quadric planes;             ///< in the corner's move
-    double most = 0;            ///< squared distance of the samples
-    double nearest = HUGE_VAL;  ///< squared distance of the corner from …
-    std::int32_t sample = -1;   ///< … the nearest of them
+    float xx, xy, xz, yy, yz, zz, x, y, z;  ///< a quadric in the corner's move
+    float most;                             ///< squared distance of the samples
+    float nearest;                          ///< squared distance of the corner from …
+    std::int32_t sample;                    ///< … the nearest of them; −1: none
+
+    void take(const Quadric& q) {
+        const auto single = [](double a) { return static_cast<float>(a); };
+        xx = single(q.xx), xy = single(q.xy), xz = single(q.xz), yy = single(q.yy), yz = single(q.yz);
+        zz = single(q.zz), x = single(q.b.x), y = single(q.b.y), z = single(q.b.z);
+    }
+    Quadric planes() const { return {xx, xy, xz, yy, yz, zz, {x, y, z}, 0}; }
 };
 
 /// The residuals along their own directions, each taken as falling with a corner's weight at the closest point.
 /// By convexity, Σ (r − Σ_j b_j x_j)² ≤ Σ_j Σ b_j (r − x_j)² for weights b_j that add up to 1, so that all vertices may
-/// move at once.
-std::array<Wish, 3> wishes(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows, std::int32_t f,
-                           const FitNorm& norm) {
-    std::array<Wish, 3> wish;
+/// move at once. \param wish  three, of the corners.
+void ask(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows, std::int32_t f, const FitNorm& norm,
+         Wish* wish) {
+    std::array<Quadric, 3> planes;
+    std::array<double, 3> nearest{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    std::array<std::int32_t, 3> sample{-1, -1, -1};
     const FaceFrame frame = frame_of(mesh, f);
     double most = 0;
     std::array<double, 3> weights{}, heights{};  // of the samples that are straight above the face
@@ -226,7 +255,7 @@ std::array<Wish, 3> wishes(const RingMesh& mesh, const AreaSamples& samples, con
         const Vec3 p = samples.point[i];
         for (std::size_t k = 0; k < 3; ++k) {
             const double apart = squared(p - frame.corner[k]);
-            if (apart < wish[k].nearest) wish[k].nearest = apart, wish[k].sample = i;
+            if (apart < nearest[k]) nearest[k] = apart, sample[k] = i;
         }
         const FaceFrame::Foot foot = frame.foot(p);
         if (foot.inside) {
@@ -244,29 +273,34 @@ std::array<Wish, 3> wishes(const RingMesh& mesh, const AreaSamples& samples, con
         const Vec3 r = p - (hit.u * a + hit.v * b + hit.w * c);
         const std::array<double, 3> shares{hit.u, hit.v, hit.w};
         for (std::size_t k = 0; k < 3; ++k)
-            if (shares[k] > 0) wish[k].planes += plane_quadric(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
+            if (shares[k] > 0) planes[k] += plane_quadric(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
     });
     for (std::size_t k = 0; k < 3; ++k) {
         if (weights[k] > 0)
-            wish[k].planes += plane_quadric(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
-        wish[k].most = most;
+            planes[k] += plane_quadric(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
+        wish[k].take(planes[k]);
+        wish[k].most = static_cast<float>(most);
+        wish[k].nearest = static_cast<float>(nearest[k]);
+        wish[k].sample = sample[k];
     }
-    return wish;
 }
 
-/// The sample nearest to v, among those of its faces and those that its neighbours had.
+/// The sample nearest to v: the one that was, or one of its faces; where these have none, one that a neighbour had.
 std::int32_t nearest_sample(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish,
                             std::int32_t v) {
     std::int32_t nearest = samples.anchor[v];
     double least = squared(samples.point[nearest] - mesh.position[v]);
-    const auto look = [&](std::int32_t sample, double apart) {
-        if (sample >= 0 && apart < least) least = apart, nearest = sample;
-    };
+    bool alone = true;
     mesh.for_corners(v, [&](std::int32_t c) {
-        look(wish[c].sample, wish[c].nearest);
+        alone = alone && wish[c].sample < 0;
+        if (wish[c].sample >= 0 && wish[c].nearest < least) least = wish[c].nearest, nearest = wish[c].sample;
+    });
+    if (!alone) return nearest;
+    mesh.for_corners(v, [&](std::int32_t c) {
         for (const std::int32_t k : {RingMesh::after(c), RingMesh::before(c)}) {
             const std::int32_t sample = samples.anchor[mesh.vertex[k]];
-            look(sample, squared(samples.point[sample] - mesh.position[v]));
+            const double apart = squared(samples.point[sample] - mesh.position[v]);
+            if (apart < least) least = apart, nearest = sample;
         }
     });
     return nearest;
@@ -284,8 +318,8 @@ Vec3 wanted_move(const RingMesh& mesh, const AreaSamples& samples, const std::ve
                    t = mesh.position[mesh.vertex[RingMesh::before(c)]] - at;
         ring_area += length(cross(s, t)) / 6;
         shortest = std::min(shortest, squared(s));
-        sum += wish[c].planes;
-        most = std::max(most, wish[c].most);
+        sum += wish[c].planes();
+        most = std::max(most, static_cast<double>(wish[c].most));
     });
     // Back to the fine surface: no sample may feel a spike.
     const double spacing = std::sqrt(static_cast<double>(samples.area[anchor]));
@@ -310,10 +344,7 @@ void move_vertices(RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows
                    const Execution& run) {
     std::vector<Wish> wish(mesh.vertex.size());
     for_blocks(mesh.tags.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
-        for (; f < end; ++f) {
-            const auto of_face = wishes(mesh, samples, rows, static_cast<std::int32_t>(f), norm);
-            std::copy(of_face.begin(), of_face.end(), &wish[3 * f]);
-        }
+        for (; f < end; ++f) ask(mesh, samples, rows, static_cast<std::int32_t>(f), norm, &wish[3 * f]);
     });
     std::vector<Vec3> move(mesh.first.size());
     std::vector<std::int32_t> anchor(mesh.first.size());

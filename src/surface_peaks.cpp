@@ -16,7 +16,7 @@ namespace {
 /// Heights are squared distances. One that is no more than `low` may be given as any that is not either.
 class Peaks {
   public:
-    Peaks(RingMesh& mesh, const AreaSamples& centres, FitSamples& vertices, const FaceBoxes& fine)
+    Peaks(RingMesh& mesh, const AreaSamples& centres, VertexSamples& vertices, const FaceBoxes& fine)
         : mesh_(mesh),
           centres_(centres),
           vertices_(vertices),
@@ -24,7 +24,7 @@ class Peaks {
           rows_(by_face(centres, mesh.tags.size())),
           first_(mesh.tags.size(), -1),
           next_(vertices.face.size(), -1),
-          squared_(vertices.face.size(), 0),
+          squared_(vertices.squared_distance),
           height_(mesh.tags.size(), 0) {
         // As many points a face as the fine surface has faces to it, roughly.
         const double ratio = 0.5 * static_cast<double>(fine.corners.size()) / static_cast<double>(mesh.face_count());
@@ -71,13 +71,9 @@ class Peaks {
     /// The greatest distance on each face, both ways. \return whether there is one.
     bool find_heights(const Execution& run) {
         std::fill(first_.begin(), first_.end(), -1);
-        for_blocks(squared_.size(), 1 << 12, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
-            for (; i < end; ++i)
-                if (vertices_.face[i] >= 0) squared_[i] = from_face(vertices_.face[i], vertices_.point[i]).squared;
-        });
+        low_ = 0;
         for (std::size_t i = squared_.size(); i-- > 0;)
-            if (vertices_.face[i] >= 0) put(static_cast<std::int32_t>(i));
-        low_ = 0.25 * *std::max_element(squared_.begin(), squared_.end());
+            if (vertices_.face[i] >= 0) low_ = std::max(low_, 0.25 * squared_[i]), put(static_cast<std::int32_t>(i));
         find_back(run);
         for (std::size_t f = 0; f < height_.size(); ++f)
             if (height_[f] > low_) queue_.push({height_[f], static_cast<std::int32_t>(f)});
@@ -289,11 +285,11 @@ class Peaks {
 
     RingMesh& mesh_;
     const AreaSamples& centres_;
-    FitSamples& vertices_;
+    VertexSamples& vertices_;
     const FaceBoxes& fine_;
     FaceSamples rows_;                        ///< the centres of each face as it was
     std::vector<std::int32_t> first_, next_;  ///< the first vertex of each face, and the next of the same face
-    std::vector<double> squared_;             ///< distance of each vertex
+    std::vector<double>& squared_;            ///< distance of each vertex
     std::vector<double> height_;              ///< of each face
     double low_ = 0;
     int steps_ = 0;           ///< of a side, in …
@@ -306,7 +302,7 @@ class Peaks {
 
 }  // namespace
 
-std::size_t lower_peaks(RingMesh& coarse, const AreaSamples& centres, FitSamples& vertices, const FaceBoxes& fine,
+std::size_t lower_peaks(RingMesh& coarse, const AreaSamples& centres, VertexSamples& vertices, const FaceBoxes& fine,
                         const Execution& run) {
     return Peaks(coarse, centres, vertices, fine).lower(run);
 }

@@ -8,7 +8,8 @@ namespace gaussmap {
 namespace {
 
 constexpr int rounds = 5;
-constexpr int last_rounds = 2;  ///< those that look at greater distances more than at small ones, if that is wanted
+constexpr int first_rounds = 3;  ///< those that flip; later there is next to nothing to gain
+constexpr int last_rounds = 2;   ///< those that look at greater distances more than at small ones, if that is wanted
 
 }  // namespace
 
@@ -25,11 +26,11 @@ void bring_nearer(RingMesh& coarse, const DecimationInput& in, const FaceBoxes& 
         const FaceSamples rows = by_face(samples, faces);
         move_vertices(coarse, samples, rows, norm, run);
         size = assign(coarse, samples, rows, run);
-        flip_sides(coarse, samples, norm, run);
+        if (round < first_rounds) flip_sides(coarse, samples, norm, run);
         if (run.progress && !run.progress((round + 1.0) / (rounds + 1))) throw Cancelled();
     }
     if (size == 0 || objective == DecimationObjective::rms) return;
-    FitSamples vertices = vertex_samples(in, samples, coarse, run);
+    VertexSamples vertices = vertex_samples(in, samples, coarse, run);
     lower_peaks(coarse, samples, vertices, fine, run);
 }
 
