@@ -12,8 +12,10 @@
 
 #include "check.h"
 #include "clock.h"
+#include "decimation_error.h"
 #include "decimation_input.h"
 #include "decimation_sources.h"
+#include "face_boxes.h"
 #include "gaussmap/curvature.h"
 #include "gaussmap/distance.h"
 #include "greedy_collapse.h"
@@ -140,11 +142,10 @@ RingMesh without_gaps(const RingMesh& mesh, std::vector<std::int32_t>& joined) {
     return out;
 }
 
-Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& options) {
+Decimation decimate_to_faces(const DecimationInput& in, const FaceBoxes& fine, const DecimateOptions& options) {
     Decimation out;
     out.degenerate = in.degenerate;
     out.non_finite = in.non_finite;
-    if (in.faces.empty()) return out;
     Lap watch;
     RingMesh mesh = tagged_mesh(in, options);
     std::vector<std::int32_t> joined = collapse(mesh, in, options);
@@ -157,7 +158,7 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
     const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;
-    if (fitted) bring_nearer(coarse, in, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    if (fitted) bring_nearer(coarse, in, fine, joined, options.objective, part_of(options.run, 0.5, 0.95));
     watch.add_to(out.seconds_fit);
 
     for (const Vec3 q : coarse.position) {
@@ -167,32 +168,35 @@ Decimation decimate_to_faces(const DecimationInput& in, const DecimateOptions& o
     for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
     if (options.sources) {
         out.vertex_source =
-            fitted ? vertex_sources(in, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
+            fitted ? vertex_sources(in, fine, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
         if (!options.seams.empty()) {
-            RingMesh fine(in.positions, in.corners);
-            tag_seams(fine, in, options.seams);
-            out.corner_source = corner_sources(in, fine, coarse, {options.run.threads, {}});
+            RingMesh seamed(in.positions, in.corners);
+            tag_seams(seamed, in, options.seams);
+            out.corner_source = corner_sources(in, seamed, coarse, {options.run.threads, {}});
         }
     }
     out.faces = std::move(coarse.vertex);
     return out;
 }
 
+/// Vertices of a result in the input's box of diagonal 1.
+std::vector<double> boxed(const DecimationInput& in, const std::vector<double>& vertices) {
+    std::vector<double> out(vertices.size());
+    for (std::size_t i = 0; i < out.size(); i += 3) store(&out[i], 1 / in.diagonal * (load(&vertices[i]) - in.centre));
+    return out;
+}
+
 /// An upper bound of the two-sided Hausdorff distance over the diagonal; infinite where it is more than `limit`.
 /// \param flat  the input's positions, which `fine` is of.
-double proven_error(const DecimationInput& in, const std::vector<double>& flat, const ClosestIndex& fine,
+double proven_error(const DecimationInput& in, const std::vector<double>& flat, const ClosestIndex& index,
                     const Decimation& made, double limit, const Execution& run) {
     if (made.faces.empty()) return std::numeric_limits<double>::infinity();
-    std::vector<double> coarse;
-    for (std::size_t i = 0; i < made.vertices.size(); i += 3) {
-        const Vec3 p = 1 / in.diagonal * (load(&made.vertices[i]) - in.centre);
-        coarse.insert(coarse.end(), {p.x, p.y, p.z});
-    }
+    const std::vector<double> coarse = boxed(in, made.vertices);
     HausdorffOptions options;
     options.limit = limit;
     options.tolerance = limit / 100;
     options.run.threads = run.threads;
-    const double back = hausdorff_bound(coarse, made.faces, fine, options).upper;
+    const double back = hausdorff_bound(coarse, made.faces, index, options).upper;
     if (back > limit) return std::numeric_limits<double>::infinity();
     const double there =
         hausdorff_bound(flat, in.corners, ClosestIndex(coarse, made.faces, options.run), options).upper;
@@ -201,21 +205,20 @@ double proven_error(const DecimationInput& in, const std::vector<double>& flat, 
 
 /// Bisection of the number of faces, by ratios: the distance falls with it, if not strictly, and what is given back was
 /// proven.
-Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options) {
-    if (in.faces.empty()) return decimate_to_faces(in, options);
+Decimation decimate_to_error(const DecimationInput& in, const FaceBoxes& fine, DecimateOptions options) {
     const std::vector<double> flat = in.flat();
-    const ClosestIndex fine(flat, in.corners, {options.run.threads, {}});
+    const ClosestIndex index(flat, in.corners, {options.run.threads, {}});
     options.faces = in.faces.size();
     const Execution run = options.run;
     options.run.progress = {};
-    Decimation best = decimate_to_faces(in, options);
+    Decimation best = decimate_to_faces(in, fine, options);
     double enough = static_cast<double>(in.faces.size()), too_few = 1;
     constexpr int trials = 10;
     for (int trial = 0; trial < trials && enough > 1.02 * too_few + 1; ++trial) {
         // The first trials look low: most meshes hold far more faces than an error of interest needs.
         options.faces = static_cast<std::size_t>(std::sqrt(enough * too_few));
-        Decimation made = decimate_to_faces(in, options);
-        const double bound = proven_error(in, flat, fine, made, options.error, run);
+        Decimation made = decimate_to_faces(in, fine, options);
+        const double bound = proven_error(in, flat, index, made, options.error, run);
         const bool stuck = made.stop == DecimationStop::validity;
         if (bound <= options.error) {
             const std::size_t faces = made.faces.size() / 3;
@@ -236,7 +239,21 @@ Decimation decimate_to_error(const DecimationInput& in, DecimateOptions options)
 Decimation decimate(Points vertices, Triangles faces, const DecimateOptions& options) {
     check(vertices, faces, options);
     const DecimationInput in = decimation_input(vertices, faces, options.run);
-    return options.error > 0 ? decimate_to_error(in, options) : decimate_to_faces(in, options);
+    if (in.faces.empty()) {
+        Decimation nothing;
+        nothing.degenerate = in.degenerate, nothing.non_finite = in.non_finite;
+        return nothing;
+    }
+    const FaceBoxes fine = face_boxes(in.positions, in.corners, {options.run.threads, {}});
+    Decimation made = options.error > 0 ? decimate_to_error(in, fine, options) : decimate_to_faces(in, fine, options);
+    Lap watch;
+    if (options.measure && !made.faces.empty()) {
+        const std::vector<double> flat = boxed(in, made.vertices);
+        const DecimationError error = decimation_error(in, fine, flat, made.faces, {options.run.threads, {}});
+        made.max_error = error.max, made.rms_error = error.rms;
+    }
+    watch.add_to(made.seconds_measure);
+    return made;
 }
 
 }  // namespace gaussmap

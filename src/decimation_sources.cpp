@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "gaussmap/distance.h"
+#include "parallel.h"
 #include "triangle_closest.h"
 
 namespace gaussmap {
@@ -79,14 +80,17 @@ std::vector<SurfacePoint> joined_sources(const DecimationInput& in, const RingMe
     return out;
 }
 
-std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const RingMesh& coarse, const Execution& run) {
-    std::vector<double> points;
-    for (const Vec3 p : coarse.position) points.insert(points.end(), {p.x, p.y, p.z});
-    std::vector<SurfacePoint> out;
-    if (points.empty()) return out;
-    const std::vector<double> flat = in.flat();
-    const std::vector<std::int32_t> element = ClosestIndex(flat, in.corners, run).closest(points, run).element;
-    for (std::size_t v = 0; v < element.size(); ++v) out.push_back(on_face(in, element[v], coarse.position[v]));
+std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const FaceBoxes& fine, const RingMesh& coarse,
+                                         const Execution& run) {
+    std::vector<SurfacePoint> out(coarse.position.size());
+    for_blocks(out.size(), 1 << 9, run, [&](std::size_t, std::size_t v, std::size_t end) {
+        // The vertices are in an order of space too: the face of one is a good guess for the next.
+        for (std::int32_t face = -1; v < end; ++v) {
+            const Vec3 p = coarse.position[v];
+            face = closest_face(fine, p, face < 0 ? FaceHit{} : hit_of(fine, face, p)).face;
+            out[v] = on_face(in, face, p);
+        }
+    });
     return out;
 }
 

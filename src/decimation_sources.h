@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "decimation_input.h"
+#include "face_boxes.h"
 #include "gaussmap/decimate.h"
 #include "ring_mesh.h"
 
@@ -15,7 +16,8 @@ std::vector<SurfacePoint> joined_sources(const DecimationInput& in, const RingMe
                                          const std::vector<std::int32_t>& joined);
 
 /// The nearest point of the input to every vertex of the coarse mesh.
-std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const RingMesh& coarse, const Execution& run);
+std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const FaceBoxes& fine, const RingMesh& coarse,
+                                         const Execution& run);
 
 /// For every corner of the coarse mesh the nearest point of the input on those faces that can be reached from the
 /// origin of its face without crossing a seam. \param fine  the input, its seams tagged and nothing else.

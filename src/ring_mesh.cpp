@@ -299,29 +299,4 @@ void RingMesh::flip(std::int32_t corner, std::int32_t other) {
     tags[fd] = static_cast<std::uint8_t>((tags[fd] & bit(at_b)) | (side_ca ? bit(other) : 0));
 }
 
-void RingMesh::split(std::int32_t corner, std::int32_t other, Vec3 p, std::int32_t m, std::int32_t face,
-                     std::int32_t twin_face) {
-    position[m] = p;
-    kind[m] = VertexKind::free;
-    const std::pair<std::int32_t, std::int32_t> halves[] = {{corner, face}, {other, twin_face}};
-    for (const auto& [at, added] : halves) {
-        // (a, b, c) with a at the corner becomes (a, b, m), and (a, m, c) is added; side c–a moves with its tag.
-        const std::int32_t to_c = before(at), to_b = after(at);
-        const std::int32_t a = vertex[at], c = vertex[to_c];
-        const bool side_ca = tagged(to_b);
-        unlink(to_c);
-        tags[at / 3] &= static_cast<std::uint8_t>(~(1 << to_b % 3));
-        tags[added] = side_ca ? 2 : 0;
-        origin[added] = origin[at / 3];
-        const std::int32_t corners[] = {a, m, c};
-        for (int k = 0; k < 3; ++k) {
-            vertex[3 * added + k] = corners[k];
-            link(3 * added + k, corners[k]);
-        }
-        vertex[to_c] = m;
-        link(to_c, m);
-    }
-    faces_ += 2;
-}
-
 }  // namespace gaussmap

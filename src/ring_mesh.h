@@ -1,4 +1,4 @@
-// A triangle mesh that changes: collapses, flips and splits, on any connectivity.
+// A triangle mesh that changes: collapses and flips, on any connectivity.
 //
 // The corners of a vertex are a circular list through one array, so that two rings join by exchanging links and nothing
 // is ever allocated. A side is known by the corner opposite to it.
@@ -85,10 +85,6 @@ class RingMesh {
     std::int32_t twin(std::int32_t corner) const;
     /// The side opposite to the corner is replaced by the other diagonal of its two faces.
     void flip(std::int32_t corner, std::int32_t twin);
-    /// A vertex at p on the side opposite to the corner, which is in two faces; the two that are added take the places
-    /// of faces that have gone, the vertex that of one that has.
-    void split(std::int32_t corner, std::int32_t twin, Vec3 p, std::int32_t new_vertex, std::int32_t face,
-               std::int32_t twin_face);
 
   private:
     std::uint32_t new_marks(std::uint32_t count);

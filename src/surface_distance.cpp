@@ -12,34 +12,12 @@
 namespace gaussmap {
 namespace {
 
-/// Of all distances the maximum, of those from `first` on the mean and the root mean square.
-Deviation deviation_of(const std::vector<double>& distance, std::size_t first) {
-    Deviation deviation;
-    for (const double d : distance) deviation.max = std::max(deviation.max, d);
-    // Added up as a tree would, so that a million small terms lose nothing.
-    constexpr std::size_t block = 1024;
-    double sum = 0, squares = 0;
-    for (std::size_t i = first; i < distance.size();) {
-        double part = 0, part_squares = 0;
-        for (const std::size_t end = std::min(distance.size(), i + block); i < end; ++i)
-            part += distance[i], part_squares += distance[i] * distance[i];
-        sum += part, squares += part_squares;
-    }
-    const auto count = static_cast<double>(distance.size() - first);
-    deviation.mean = sum / count;
-    deviation.rms = std::sqrt(squares / count);
-    return deviation;
-}
-
 Deviation deviation_from(Points vertices, Triangles faces, const ClosestIndex& to, const DistanceOptions& options,
                          SampleCounts& counts, const Execution& run) {
     const SurfaceSamples samples =
         surface_samples(vertices, faces, options.samples, options.seed, part_of(run, 0, 0.1));
     counts = samples.counts;
-    const std::size_t first = counts.faces > 0   ? counts.vertices + counts.edges
-                              : counts.edges > 0 ? counts.vertices
-                                                 : 0;
-    return deviation_of(to.distances(samples.points, part_of(run, 0.1, 1)), first);
+    return deviation_of(to.distances(samples.points, part_of(run, 0.1, 1)), counts);
 }
 
 void check_named(const char* name, Points vertices, Triangles faces) {

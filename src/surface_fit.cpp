@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
-#include <utility>
 
+#include "face_frame.h"
 #include "parallel.h"
 #include "quadric.h"
 #include "triangle_closest.h"
@@ -13,12 +14,18 @@
 namespace gaussmap {
 namespace {
 
-constexpr std::size_t grain = 1 << 12;
-constexpr double overstep = 1.6;  ///< of a move that by itself is about half of what it could be
-constexpr double pull = 1e-3;     ///< towards no move, where the samples leave a direction free
-constexpr double astray = 5;      ///< how much more than the fine surface a vertex that is far from it counts
+constexpr std::size_t grain = 1 << 12, faces_grain = 1 << 9;
+constexpr double overstep = 1.6;    ///< of a move that by itself is about half of what it could be
+constexpr double pull = 1e-3;       ///< towards no move, where the samples leave a direction free
+constexpr double straight = 0.998;  ///< of a vertex whose faces lie about in one plane: some 7° off on either side
+constexpr double astray = 5;        ///< how much more than the fine surface a vertex that is far from it counts
 
-/// Walk from the sample's face to closer ones, until none beside it is.
+FaceFrame frame_of(const RingMesh& mesh, std::int32_t f) {
+    const std::int32_t* v = &mesh.vertex[3 * f];
+    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]};
+}
+
+/// Walk from a face to closer ones, until none beside it is.
 class Walk {
   public:
     Walk(const RingMesh& mesh, Vec3 p) : mesh_(mesh), p_(p) {}
@@ -42,11 +49,6 @@ class Walk {
             look_around(mesh_.vertex[3 * at + (std::max_element(w.begin(), w.end()) - w.begin())]);
         }
     }
-
-    TriangleHit hit{};
-    std::int32_t face = -1;
-
-  private:
     /// Further from every side of its face than from p, the closest point has no rival that does not fold back over it.
     bool settled() const {
         if (hit.u <= 0 || hit.v <= 0 || hit.w <= 0) return false;
@@ -57,35 +59,155 @@ class Walk {
                hit.squared * squared(b - a) < hit.w * hit.w * nn;
     }
 
+    TriangleHit hit{};
+    std::int32_t face = -1;
+
+  private:
     const RingMesh& mesh_;
     Vec3 p_;
 };
 
-void keep(FitSamples& samples, std::size_t i, const Walk& walk) {
-    samples.face[i] = walk.face;
-    samples.weights[i] = {walk.hit.u, walk.hit.v, walk.hit.w};
-    samples.squared_distance[i] = walk.hit.squared;
+/// The face closest to each sample, from the vertex of the coarse mesh that start(sample) names.
+template <class Start>
+void assign_first(const RingMesh& mesh, FitSamples& samples, const Execution& run, Start&& start) {
+    samples.face.assign(samples.point.size(), -1);
+    for_blocks(samples.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
+        std::int32_t before = -1;
+        FaceFrame frame;
+        for (; i < end; ++i) {
+            const std::int32_t v = start(i);
+            if (v < 0) continue;
+            const Vec3 p = samples.point[i];
+            // The one before is near: most often its face will do, if it is at the vertex.
+            const std::int32_t* e = before < 0 ? nullptr : &mesh.vertex[3 * before];
+            if (e && (e[0] == v || e[1] == v || e[2] == v) && frame.settled(frame.foot(p))) {
+                samples.face[i] = before;
+                continue;
+            }
+            Walk walk(mesh, p);
+            walk.look_around(v);
+            if (walk.face < 0) continue;
+            walk.descend();
+            if (walk.face != before) before = walk.face, frame = frame_of(mesh, before);
+            samples.face[i] = before;
+        }
+    });
+}
+
+/// Vertices whose normal is shorter than those of their faces laid end to end, as where there are creases.
+std::vector<std::int32_t> bent_vertices(const DecimationInput& in) {
+    std::vector<Vec3> normal(in.positions.size());
+    std::vector<double> lengths(in.positions.size(), 0);
+    for (std::size_t c = 0; c < in.corners.size(); c += 3) {
+        const std::int32_t* v = &in.corners[c];
+        const Vec3 a = in.positions[v[0]], n = cross(in.positions[v[1]] - a, in.positions[v[2]] - a);
+        const double l = length(n);
+        for (int k = 0; k < 3; ++k) normal[v[k]] = normal[v[k]] + n, lengths[v[k]] += l;
+    }
+    std::vector<std::int32_t> bent;
+    for (std::size_t v = 0; v < normal.size(); ++v)
+        if (length(normal[v]) < straight * lengths[v]) bent.push_back(static_cast<std::int32_t>(v));
+    return bent;
 }
 
 }  // namespace
 
-void assign_around(const RingMesh& mesh, FitSamples& samples, std::size_t i, std::int32_t v) {
+AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32_t>& joined, const RingMesh& coarse,
+                         const Execution& run) {
+    const std::vector<std::int32_t> bent = bent_vertices(in);
+    AreaSamples out;
+    const std::size_t n = in.corners.size() / 3;
+    out.point.reserve(n + bent.size());
+    out.point.resize(n);
+    out.area.resize(n + bent.size());
+    for_blocks(n, grain, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
+        for (; f < end; ++f) {
+            const std::int32_t* v = &in.corners[3 * f];
+            const Vec3 a = in.positions[v[0]], b = in.positions[v[1]], c = in.positions[v[2]];
+            out.point[f] = 1.0 / 3 * (a + b + c);
+            out.area[f] = static_cast<float>(0.5 * length(cross(b - a, c - a)));
+        }
+    });
+    if (!bent.empty()) {
+        // Exact for quadratics: a twelfth of the area at each corner, the rest at the centre.
+        std::vector<std::int32_t> sample(in.positions.size(), -1);
+        for (const std::int32_t v : bent) {
+            sample[v] = static_cast<std::int32_t>(out.point.size());
+            out.point.push_back(in.positions[v]);
+        }
+        for (std::size_t f = 0; f < n; ++f) {
+            const float share = out.area[f] / 12;
+            for (std::size_t k = 0; k < 3; ++k)
+                if (const std::int32_t at = sample[in.corners[3 * f + k]]; at >= 0)
+                    out.area[at] += share, out.area[f] -= share;
+        }
+    }
+    assign_first(coarse, out, run, [&](std::size_t i) { return joined[i < n ? in.corners[3 * i] : bent[i - n]]; });
+    out.anchor.assign(coarse.first.size(), 0);
+    for (std::size_t c = in.corners.size(); c-- > 0;)
+        if (const std::int32_t v = joined[in.corners[c]]; v >= 0) out.anchor[v] = static_cast<std::int32_t>(c / 3);
+    return out;
+}
+
+VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
+                             const Execution& run) {
+    VertexSamples out;
+    out.point = in.positions;
+    out.face.assign(out.point.size(), -1);
+    out.squared_distance.assign(out.point.size(), HUGE_VAL);
+    for (std::size_t c = 0; c < in.corners.size(); ++c) {
+        const std::int32_t v = in.corners[c], f = centres.face[c / 3];
+        if (f < 0 || f == out.face[v]) continue;
+        Walk walk(coarse, out.point[v]);
+        walk.look(f);
+        if (walk.hit.squared < out.squared_distance[v]) out.squared_distance[v] = walk.hit.squared, out.face[v] = f;
+    }
+    for_blocks(out.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
+        for (; i < end; ++i) {
+            if (out.face[i] < 0) continue;
+            Walk walk(coarse, out.point[i]);
+            walk.look(out.face[i]);
+            walk.descend();
+            out.face[i] = walk.face, out.squared_distance[i] = walk.hit.squared;
+        }
+    });
+    return out;
+}
+
+void assign_around(const RingMesh& mesh, FitSamples& samples, std::int32_t i, std::int32_t v) {
     Walk walk(mesh, samples.point[i]);
     walk.look_around(v);
     walk.descend();
-    keep(samples, i, walk);
+    samples.face[i] = walk.face;
 }
 
-void assign(const RingMesh& mesh, FitSamples& samples, const Execution& run) {
-    for_blocks(samples.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (samples.face[i] < 0) continue;
-            Walk walk(mesh, samples.point[i]);
-            walk.look(samples.face[i]);
-            walk.descend();
-            keep(samples, i, walk);
+double assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const Execution& run) {
+    struct Part {
+        double squares = 0, area = 0;
+    };
+    const std::size_t faces = mesh.tags.size();
+    std::vector<Part> parts(block_count(faces, faces_grain));
+    for_blocks(faces, faces_grain, {run.threads, {}}, [&](std::size_t b, std::size_t f, std::size_t end) {
+        for (; f < end; ++f) {
+            const auto face = static_cast<std::int32_t>(f);
+            const FaceFrame frame = frame_of(mesh, face);
+            rows.for_each(face, [&](std::int32_t i) {
+                const FaceFrame::Foot foot = frame.foot(samples.point[i]);
+                double squared = foot.height * foot.height;
+                if (!frame.settled(foot)) {
+                    Walk walk(mesh, samples.point[i]);
+                    walk.look(face);
+                    walk.descend();
+                    samples.face[i] = walk.face;
+                    squared = walk.hit.squared;
+                }
+                parts[b].squares += samples.area[i] * squared, parts[b].area += samples.area[i];
+            });
         }
     });
+    Part sum;
+    for (const Part& part : parts) sum.squares += part.squares, sum.area += part.area;
+    return sum.squares > 0 ? std::sqrt(sum.squares / sum.area) : 0;
 }
 
 FaceSamples by_face(const FitSamples& samples, std::size_t faces) {
@@ -103,127 +225,145 @@ FaceSamples by_face(const FitSamples& samples, std::size_t faces) {
 
 namespace {
 
-/// Where v wants to go: the residuals along their own directions, each taken as falling with v's weight at its closest
-/// point. By convexity, Σ (r − Σ_j b_j x_j)² ≤ Σ_j Σ b_j (r − x_j)² for weights b_j that add up to 1, so that all
-/// vertices may move at once.
-Vec3 wanted_move(const RingMesh& mesh, const FitSamples& samples, const FaceSamples& rows, std::int32_t v,
-                 const FitNorm& norm) {
+/// What the samples of a face ask of one of its corners. Single precision will do: it is a step, taken again.
+struct Wish {
+    float xx, xy, xz, yy, yz, zz, x, y, z;  ///< a quadric in the corner's move
+    float most;                             ///< squared distance of the samples
+    float nearest;                          ///< squared distance of the corner from …
+    std::int32_t sample;                    ///< … the nearest of them; −1: none
+
+    void take(const Quadric& q) {
+        const auto single = [](double a) { return static_cast<float>(a); };
+        xx = single(q.xx), xy = single(q.xy), xz = single(q.xz), yy = single(q.yy), yz = single(q.yz);
+        zz = single(q.zz), x = single(q.b.x), y = single(q.b.y), z = single(q.b.z);
+    }
+    Quadric planes() const { return {xx, xy, xz, yy, yz, zz, {x, y, z}, 0}; }
+};
+
+/// The residuals along their own directions, each taken as falling with a corner's weight at the closest point.
+/// By convexity, Σ (r − Σ_j b_j x_j)² ≤ Σ_j Σ b_j (r − x_j)² for weights b_j that add up to 1, so that all vertices may
+/// move at once. \param wish  three, of the corners.
+void ask(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows, std::int32_t f, const FitNorm& norm,
+         Wish* wish) {
+    std::array<Quadric, 3> planes;
+    std::array<double, 3> nearest{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    std::array<std::int32_t, 3> sample{-1, -1, -1};
+    const FaceFrame frame = frame_of(mesh, f);
+    double most = 0;
+    std::array<double, 3> weights{}, heights{};  // of the samples that are straight above the face
+    rows.for_each(f, [&](std::int32_t i) {
+        const Vec3 p = samples.point[i];
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double apart = squared(p - frame.corner[k]);
+            if (apart < nearest[k]) nearest[k] = apart, sample[k] = i;
+        }
+        const FaceFrame::Foot foot = frame.foot(p);
+        if (foot.inside) {
+            const double d = foot.height * foot.height, weight = samples.area[i] * norm.weight(d);
+            most = std::max(most, d);
+            for (std::size_t k = 0; k < 3; ++k)
+                weights[k] += weight * foot.weights[k], heights[k] += weight * foot.weights[k] * foot.height;
+            return;
+        }
+        const auto& [a, b, c] = frame.corner;
+        const TriangleHit hit = closest_on_triangle(p, a, b, c);
+        if (!(hit.squared > 0)) return;
+        most = std::max(most, hit.squared);
+        const double weight = samples.area[i] * norm.weight(hit.squared);
+        const Vec3 r = p - (hit.u * a + hit.v * b + hit.w * c);
+        const std::array<double, 3> shares{hit.u, hit.v, hit.w};
+        for (std::size_t k = 0; k < 3; ++k)
+            if (shares[k] > 0) planes[k] += plane_quadric(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
+    });
+    for (std::size_t k = 0; k < 3; ++k) {
+        if (weights[k] > 0)
+            planes[k] += plane_quadric(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
+        wish[k].take(planes[k]);
+        wish[k].most = static_cast<float>(most);
+        wish[k].nearest = static_cast<float>(nearest[k]);
+        wish[k].sample = sample[k];
+    }
+}
+
+/// The sample nearest to v: the one that was, or one of its faces; where these have none, one that a neighbour had.
+std::int32_t nearest_sample(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish,
+                            std::int32_t v) {
+    std::int32_t nearest = samples.anchor[v];
+    double least = squared(samples.point[nearest] - mesh.position[v]);
+    bool alone = true;
+    mesh.for_corners(v, [&](std::int32_t c) {
+        alone = alone && wish[c].sample < 0;
+        if (wish[c].sample >= 0 && wish[c].nearest < least) least = wish[c].nearest, nearest = wish[c].sample;
+    });
+    if (!alone) return nearest;
+    mesh.for_corners(v, [&](std::int32_t c) {
+        for (const std::int32_t k : {RingMesh::after(c), RingMesh::before(c)}) {
+            const std::int32_t sample = samples.anchor[mesh.vertex[k]];
+            const double apart = squared(samples.point[sample] - mesh.position[v]);
+            if (apart < least) least = apart, nearest = sample;
+        }
+    });
+    return nearest;
+}
+
+/// Where v goes.
+Vec3 wanted_move(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish, std::int32_t v,
+                 std::int32_t anchor, const FitNorm& norm) {
     Quadric sum;
     double ring_area = 0;  // a third of it
     double most = 0, shortest = HUGE_VAL;
+    const Vec3 at = mesh.position[v];
     mesh.for_corners(v, [&](std::int32_t c) {
-        const std::int32_t f = c / 3;
-        const std::int32_t* e = &mesh.vertex[3 * f];
-        Vec3 n = cross(mesh.position[e[1]] - mesh.position[e[0]], mesh.position[e[2]] - mesh.position[e[0]]);
-        const double twice_area = length(n);
-        ring_area += twice_area / 6;
-        shortest = std::min(shortest, length(mesh.position[mesh.vertex[RingMesh::after(c)]] - mesh.position[v]));
-        if (twice_area > 0) n = 1 / twice_area * n;
-        for (std::int32_t k = rows.begin[f]; k < rows.begin[f + 1]; ++k) {
-            const std::int32_t i = rows.items[k];
-            const Vec3 weights = samples.weights[i];
-            const double b = c % 3 == 0 ? weights.x : c % 3 == 1 ? weights.y : weights.z;
-            if (b <= 0) continue;
-            const Vec3 q =
-                weights.x * mesh.position[e[0]] + weights.y * mesh.position[e[1]] + weights.z * mesh.position[e[2]];
-            const Vec3 r = samples.point[i] - q;
-            const double d = std::sqrt(samples.squared_distance[i]);
-            most = std::max(most, samples.squared_distance[i]);
-            const bool inside = weights.x > 0 && weights.y > 0 && weights.z > 0;
-            const Vec3 along = inside || !(d > 0) ? n : 1 / d * r;
-            const double weight = samples.area[i] * b * norm.weight(samples.squared_distance[i]);
-            // Plane along·x = along·r for the move x.
-            sum += plane_quadric(along, r, weight);
-        }
+        const Vec3 s = mesh.position[mesh.vertex[RingMesh::after(c)]] - at,
+                   t = mesh.position[mesh.vertex[RingMesh::before(c)]] - at;
+        ring_area += length(cross(s, t)) / 6;
+        shortest = std::min(shortest, squared(s));
+        sum += wish[c].planes();
+        most = std::max(most, static_cast<double>(wish[c].most));
     });
     // Back to the fine surface: no sample may feel a spike.
-    const std::int32_t anchor = samples.anchor[v];
-    const Vec3 back = samples.point[anchor] - mesh.position[v];
+    const double spacing = std::sqrt(static_cast<double>(samples.area[anchor]));
+    const Vec3 back = samples.point[anchor] - at;
     most = std::max(most, squared(back));
-    const double d = length(back), excess = d - std::sqrt(samples.area[anchor]);
+    const double d = length(back), excess = d - spacing;
     if (excess > 0) sum += plane_quadric(1 / d * back, excess / d * back, astray * ring_area);
     // Weights that grow with the distances to be made small call for shorter steps.
     Vec3 move = overstep / (norm.power - 1) * minimizer(sum, {}, pull);
     // No further than the surface is away, several times over where it is met askew, nor past a neighbour.
-    const double bound = std::min(3 * std::sqrt(most), 0.3 * shortest), l = length(move);
+    const double bound = std::min(3 * std::sqrt(most), 0.3 * std::sqrt(shortest)), l = length(move);
     if (l > bound) move = bound / l * move;
     // Never far from every sample.
     const Vec3 off = move - back;
-    const double away = length(off), trust = 3 / norm.scale + std::sqrt(samples.area[anchor]);
+    const double away = length(off), trust = 3 / norm.scale + spacing;
     return away > trust ? back + trust / away * off : move;
-}
-
-/// The sample nearest to each vertex, among those of its faces and those that its neighbours had.
-void find_anchors(const RingMesh& mesh, FitSamples& samples, const FaceSamples& rows) {
-    const std::vector<std::int32_t> before = samples.anchor;
-    for (std::size_t i = 0; i < mesh.first.size(); ++i) {
-        const Vec3 p = mesh.position[i];
-        std::int32_t nearest = before[i];
-        double least = squared(samples.point[nearest] - p);
-        const auto look = [&](std::int32_t k) {
-            const double d = squared(samples.point[k] - p);
-            if (d < least) least = d, nearest = k;
-        };
-        mesh.for_corners(static_cast<std::int32_t>(i), [&](std::int32_t c) {
-            look(before[mesh.vertex[RingMesh::after(c)]]);
-            look(before[mesh.vertex[RingMesh::before(c)]]);
-            rows.for_each(c / 3, look);
-        });
-        samples.anchor[i] = nearest;
-    }
 }
 
 }  // namespace
 
-void move_vertices(RingMesh& mesh, FitSamples& samples, const FitNorm& norm, const Execution& run) {
-    const FaceSamples rows = by_face(samples, mesh.tags.size());
-    find_anchors(mesh, samples, rows);
-    std::vector<Vec3> move(mesh.first.size());
-    for_blocks(move.size(), 1 << 9, {run.threads, {}}, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v)
-            if (mesh.kind[v] == VertexKind::free)
-                move[v] = wanted_move(mesh, samples, rows, static_cast<std::int32_t>(v), norm);
+void move_vertices(RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const FitNorm& norm,
+                   const Execution& run) {
+    std::vector<Wish> wish(mesh.vertex.size());
+    for_blocks(mesh.tags.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
+        for (; f < end; ++f) ask(mesh, samples, rows, static_cast<std::int32_t>(f), norm, &wish[3 * f]);
     });
+    std::vector<Vec3> move(mesh.first.size());
+    std::vector<std::int32_t> anchor(mesh.first.size());
+    for_blocks(move.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
+        for (; i < end; ++i) {
+            const auto v = static_cast<std::int32_t>(i);
+            anchor[i] = nearest_sample(mesh, samples, wish, v);
+            if (mesh.kind[i] == VertexKind::free) move[i] = wanted_move(mesh, samples, wish, v, anchor[i], norm);
+        }
+    });
+    samples.anchor = std::move(anchor);
     for (std::size_t v = 0; v < move.size(); ++v)
         for (int halvings = 0; halvings < 3; ++halvings) {
+            if (mesh.kind[v] != VertexKind::free) break;
             const Vec3 p = mesh.position[v] + std::ldexp(1.0, -halvings) * move[v];
             if (mesh.folds(static_cast<std::int32_t>(v), p)) continue;
             mesh.position[v] = p;
             break;
         }
-}
-
-FitSamples samples_of(const std::vector<Vec3>& positions, const std::vector<std::int32_t>& corners,
-                      const std::vector<std::int32_t>& joined, const RingMesh& coarse) {
-    FitSamples out;
-    const std::size_t n = positions.size();
-    out.point = positions;
-    out.area.assign(n, 0);
-    std::vector<std::int32_t> start = joined;
-    for (std::size_t c = 0; c < corners.size(); c += 3) {
-        const Vec3 a = positions[corners[c]], b = positions[corners[c + 1]], d = positions[corners[c + 2]];
-        // Exact for quadratics: 1/12 a corner, 3/4 at the centre.
-        const double area = 0.5 * length(cross(b - a, d - a));
-        for (std::size_t k = 0; k < 3; ++k) out.area[corners[c + k]] += area / 12;
-        out.point.push_back(1.0 / 3 * (a + b + d));
-        out.area.push_back(0.75 * area);
-        start.push_back(joined[corners[c]]);
-    }
-    out.face.assign(out.point.size(), -1);
-    out.weights.resize(out.point.size());
-    out.squared_distance.resize(out.point.size());
-    for (std::size_t i = 0; i < out.point.size(); ++i) {
-        if (start[i] < 0) continue;
-        Walk walk(coarse, out.point[i]);
-        walk.look_around(start[i]);
-        if (walk.face < 0) continue;
-        walk.descend();
-        keep(out, i, walk);
-    }
-    out.anchor.assign(coarse.first.size(), 0);
-    for (std::size_t i = n; i-- > 0;)
-        if (joined[i] >= 0) out.anchor[joined[i]] = static_cast<std::int32_t>(i);
-    return out;
 }
 
 }  // namespace gaussmap

@@ -1,6 +1,9 @@
 // Sides flipped where the samples of their two faces come nearer.
 #include <algorithm>
+#include <array>
 
+#include "face_frame.h"
+#include "parallel.h"
 #include "surface_fit.h"
 #include "triangle_closest.h"
 
@@ -21,42 +24,129 @@ bool joined(const RingMesh& mesh, std::int32_t a, std::int32_t b) {
     return found;
 }
 
+/// Faces (a, b, c) and (d, c, b), which may become (a, b, d) and (d, c, a).
+struct Quad {
+    std::int32_t corner, twin;
+    Vec3 a, b, c, d;
+
+    double shape() const { return std::min(shape_of(a, b, c), shape_of(d, c, b)); }
+    double new_shape() const { return std::min(shape_of(a, b, d), shape_of(d, c, a)); }
+    /// Neither new face may turn against either old one.
+    bool folds() const {
+        return turns_over(a, b, c, a, b, d) || turns_over(a, b, c, d, c, a) || turns_over(d, c, b, a, b, d) ||
+               turns_over(d, c, b, d, c, a);
+    }
+};
+
+Quad quad_of(const RingMesh& mesh, std::int32_t corner, std::int32_t twin) {
+    const auto at = [&](std::int32_t c) { return mesh.position[mesh.vertex[c]]; };
+    return {corner, twin, at(corner), at(RingMesh::after(corner)), at(RingMesh::before(corner)), at(twin)};
+}
+
+/// Where the diagonals pass each other, seen along where they are furthest apart: at b + along (c − b), the other at
+/// `gap` from there.
+struct Crossing {
+    double along;
+    Vec3 gap;
+};
+Crossing crossing_of(const Quad& q) {
+    const Vec3 u = q.c - q.b, v = q.d - q.a, w = q.b - q.a;
+    const double uu = squared(u), uv = dot(u, v), vv = squared(v), uw = dot(u, w), vw = dot(v, w);
+    const double determinant = uu * vv - uv * uv;
+    if (!(determinant > 0)) return {-1, {}};
+    const double along = (uv * vw - vv * uw) / determinant, across = (uu * vw - uv * uw) / determinant;
+    return {along, across * v - w - along * u};
+}
+
+/// What is known of a side from the samples of one of its faces.
+struct Outlook {
+    double cost = 0;         ///< of the face's samples
+    double gain = 0;         ///< what of it a flip would take away, to first order
+    std::int32_t twin = -1;  ///< where a flip may be thought of
+};
+
+/// A flip lifts the surface of the quad by a tent: by the gap of the diagonals where they cross, by nothing on the
+/// quad's sides, linear in between. With φ the tent of height 1 and r the residuals, Σ A r² falls by
+/// 2 g Σ A φ r − g² Σ A φ².
+std::array<Outlook, 3> outlooks(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows,
+                                std::int32_t f, const FitNorm& norm) {
+    const std::int32_t* v = &mesh.vertex[3 * f];
+    const FaceFrame frame(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]);
+    std::array<Outlook, 3> out;
+    std::array<double, 3> per_from{}, per_to{}, gap{}, linear{}, square{};
+    for (std::int32_t k = 0; k < 3; ++k) {
+        const std::int32_t corner = 3 * f + k;
+        const std::int32_t twin = mesh.tagged(corner) ? -1 : mesh.twin(corner);
+        if (twin < 0) continue;
+        const Crossing crossing = crossing_of(quad_of(mesh, corner, twin));
+        if (!(crossing.along > 0 && crossing.along < 1)) continue;
+        per_from[k] = 1 / (1 - crossing.along), per_to[k] = 1 / crossing.along;
+        gap[k] = dot(frame.normal, crossing.gap);
+        out[k].twin = twin;
+    }
+    double cost = 0;
+    rows.for_each(f, [&](std::int32_t i) {
+        FaceFrame::Foot foot = frame.foot(samples.point[i]);
+        double d = foot.height * foot.height;
+        if (!foot.inside) {
+            const TriangleHit hit =
+                closest_on_triangle(samples.point[i], frame.corner[0], frame.corner[1], frame.corner[2]);
+            d = hit.squared, foot.weights = {hit.u, hit.v, hit.w};
+        }
+        const double area = samples.area[i] * norm.weight(d);
+        cost += area * d;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double tent =
+                std::min(foot.weights[(k + 1) % 3] * per_from[k], foot.weights[(k + 2) % 3] * per_to[k]);
+            linear[k] += area * tent * foot.height, square[k] += area * tent * tent;
+        }
+    });
+    for (std::size_t k = 0; k < 3; ++k) out[k].cost = cost, out[k].gain = gap[k] * (2 * linear[k] - gap[k] * square[k]);
+    return out;
+}
+
+/// Does a flip bring the samples nearer, or better triangles at the same distance?
+bool worth_it(const Quad& q, const AreaSamples& samples, const FaceSamples& rows, const FitNorm& norm) {
+    double before = 0, after = 0;
+    const auto add = [&](std::int32_t k, Vec3 s, Vec3 t, Vec3 u) {
+        const Vec3 p = samples.point[k];
+        before += samples.area[k] * norm.cost(closest_on_triangle(p, s, t, u).squared);
+        after += samples.area[k] * norm.cost(std::min(closest_on_triangle(p, q.a, q.b, q.d).squared,
+                                                      closest_on_triangle(p, q.d, q.c, q.a).squared));
+    };
+    rows.for_each(q.corner / 3, [&](std::int32_t k) { add(k, q.a, q.b, q.c); });
+    rows.for_each(q.twin / 3, [&](std::int32_t k) { add(k, q.d, q.c, q.b); });
+    return after < 0.98 * before || (after <= 1.01 * before && q.new_shape() > 1.5 * q.shape());
+}
+
 }  // namespace
 
-std::size_t flip_sides(RingMesh& mesh, FitSamples& samples, const FitNorm& norm) {
+std::size_t flip_sides(RingMesh& mesh, AreaSamples& samples, const FitNorm& norm, const Execution& run) {
     const FaceSamples rows = by_face(samples, mesh.tags.size());
+    std::vector<Outlook> outlook(mesh.vertex.size());
+    for_blocks(mesh.tags.size(), 1 << 9, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
+        for (; f < end; ++f) {
+            const auto of_face = outlooks(mesh, samples, rows, static_cast<std::int32_t>(f), norm);
+            std::copy(of_face.begin(), of_face.end(), &outlook[3 * f]);
+        }
+    });
     std::vector<bool> done(mesh.tags.size(), false);
     std::size_t flips = 0;
     for (std::size_t i = 0; i < mesh.vertex.size(); ++i) {
         const auto corner = static_cast<std::int32_t>(i);
-        if (mesh.vertex[i] < 0 || mesh.tagged(corner) || done[i / 3]) continue;
-        const std::int32_t twin = mesh.twin(corner);
-        if (twin < corner || done[twin / 3]) continue;
-        const std::int32_t f = corner / 3, g = twin / 3;
+        const std::int32_t twin = outlook[i].twin;
+        if (twin < corner || done[i / 3] || done[twin / 3]) continue;
+        const double cost = outlook[corner].cost + outlook[twin].cost, gain = outlook[corner].gain + outlook[twin].gain;
+        const Quad quad = quad_of(mesh, corner, twin);
+        // What is not even likely is not tried.
+        if (gain < 0.01 * cost && (gain < -0.05 * cost || quad.new_shape() <= 1.5 * quad.shape())) continue;
         const std::int32_t a = mesh.vertex[corner], d = mesh.vertex[twin];
-        const std::int32_t b = mesh.vertex[RingMesh::after(corner)], c = mesh.vertex[RingMesh::before(corner)];
-        if (a == d) continue;
-        const Vec3 pa = mesh.position[a], pb = mesh.position[b], pc = mesh.position[c], pd = mesh.position[d];
-        // Neither new face may turn against either old one.
-        if (turns_over(pa, pb, pc, pa, pb, pd) || turns_over(pa, pb, pc, pd, pc, pa) ||
-            turns_over(pd, pc, pb, pa, pb, pd) || turns_over(pd, pc, pb, pd, pc, pa))
-            continue;
-        double before = 0, after = 0;
-        for (const std::int32_t face : {f, g})
-            rows.for_each(face, [&](std::int32_t k) {
-                const Vec3 p = samples.point[k];
-                before += samples.area[k] * norm.cost(samples.squared_distance[k]);
-                after += samples.area[k] * norm.cost(std::min(closest_on_triangle(p, pa, pb, pd).squared,
-                                                              closest_on_triangle(p, pd, pc, pa).squared));
-            });
-        const double shape = std::min(shape_of(pa, pb, pc), shape_of(pd, pc, pb)),
-                     new_shape = std::min(shape_of(pa, pb, pd), shape_of(pd, pc, pa));
-        if (!(after < 0.98 * before || (after <= 1.01 * before && new_shape > 1.5 * shape)) || joined(mesh, a, d))
-            continue;
+        if (a == d || quad.folds() || joined(mesh, a, d) || !worth_it(quad, samples, rows, norm)) continue;
         mesh.flip(corner, twin);
-        done[f] = done[g] = true;
-        for (const std::int32_t face : {f, g})
-            rows.for_each(face, [&](std::int32_t k) { assign_around(mesh, samples, static_cast<std::size_t>(k), a); });
+        for (const std::int32_t face : {corner / 3, twin / 3}) {
+            done[face] = true;
+            rows.for_each(face, [&](std::int32_t k) { assign_around(mesh, samples, k, a); });
+        }
         ++flips;
     }
     return flips;

@@ -2,41 +2,47 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <queue>
 #include <utility>
 
+#include "parallel.h"
 #include "triangle_closest.h"
 
 namespace gaussmap {
 namespace {
 
+/// Heights are squared distances. One that is no more than `low` may be given as any that is not either.
 class Peaks {
   public:
-    Peaks(RingMesh& mesh, FitSamples& samples, const ClosestIndex& fine, const Execution& run)
-        : mesh_(mesh), samples_(samples), fine_(fine), run_({run.threads, {}}) {
+    Peaks(RingMesh& mesh, const AreaSamples& centres, VertexSamples& vertices, const FaceBoxes& fine)
+        : mesh_(mesh),
+          centres_(centres),
+          vertices_(vertices),
+          fine_(fine),
+          rows_(by_face(centres, mesh.tags.size())),
+          first_(mesh.tags.size(), -1),
+          next_(vertices.face.size(), -1),
+          squared_(vertices.squared_distance),
+          height_(mesh.tags.size(), 0) {
         // As many points a face as the fine surface has faces to it, roughly.
-        const double ratio = static_cast<double>(samples.face.size()) / static_cast<double>(1 + mesh.face_count());
-        const int steps = std::clamp(static_cast<int>(std::sqrt(ratio)), 2, 8);
-        for (int i = 0; i <= steps; ++i)
-            for (int j = 0; i + j <= steps; ++j)
+        const double ratio = 0.5 * static_cast<double>(fine.corners.size()) / static_cast<double>(mesh.face_count());
+        steps_ = std::clamp(static_cast<int>(std::sqrt(ratio)), 2, 8);
+        for (int i = 0; i <= steps_; ++i)
+            for (int j = 0; i + j <= steps_; ++j)
                 grid_.push_back(
-                    1.0 / steps *
-                    Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(steps - i - j)});
+                    1.0 / steps_ *
+                    Vec3{static_cast<double>(i), static_cast<double>(j), static_cast<double>(steps_ - i - j)});
     }
 
-    std::size_t lower(std::size_t most_steps) {
-        first_.assign(mesh_.tags.size(), -1);
-        next_.assign(samples_.face.size(), -1);
-        for (std::size_t k = samples_.face.size(); k-- > 0;)
-            if (samples_.face[k] >= 0) put(static_cast<std::int32_t>(k));
-        find_heights();
+    std::size_t lower(const Execution& run) {
         std::size_t moves = 0;
-        for (std::size_t step = 0; step < most_steps && !queue_.empty(); ++step) {
+        for (const std::size_t most = 256 + mesh_.face_count() / 16; moves < most;) {
+            if (queue_.empty() && !find_heights(run)) break;
             const auto [height, face] = queue_.top();
-            queue_.pop();
             if (height != height_[face]) {
-                --step;
+                queue_.pop();
                 continue;
             }
             bool better = false;
@@ -53,7 +59,7 @@ class Peaks {
 
   private:
     void put(std::int32_t sample) {
-        std::int32_t& first = first_[samples_.face[sample]];
+        std::int32_t& first = first_[vertices_.face[sample]];
         next_[sample] = first;
         first = sample;
     }
@@ -62,120 +68,205 @@ class Peaks {
         for (std::int32_t k = first_[f]; k >= 0; k = next_[k]) body(k);
     }
 
-    /// The greatest distance on each face, both ways.
-    void find_heights() {
-        const std::size_t faces = mesh_.tags.size();
-        std::vector<double> queries;
-        queries.reserve(3 * grid_.size() * faces);
-        for (std::size_t f = 0; f < faces; ++f) add_queries(static_cast<std::int32_t>(f), queries);
-        const std::vector<double> back = fine_.distances(queries, run_);
-        height_.resize(faces);
-        std::vector<std::pair<double, std::int32_t>> order;
-        for (std::size_t f = 0; f < faces; ++f) {
-            height_[f] = height_of(static_cast<std::int32_t>(f), &back[grid_.size() * f]);
-            order.push_back({height_[f], static_cast<std::int32_t>(f)});
-        }
-        queue_ = std::priority_queue<std::pair<double, std::int32_t>>(order.begin(), order.end());
+    /// The greatest distance on each face, both ways. \return whether there is one.
+    bool find_heights(const Execution& run) {
+        std::fill(first_.begin(), first_.end(), -1);
+        low_ = 0;
+        for (std::size_t i = squared_.size(); i-- > 0;)
+            if (vertices_.face[i] >= 0) low_ = std::max(low_, 0.25 * squared_[i]), put(static_cast<std::int32_t>(i));
+        find_back(run);
+        for (std::size_t f = 0; f < height_.size(); ++f)
+            if (height_[f] > low_) queue_.push({height_[f], static_cast<std::int32_t>(f)});
+        return !queue_.empty();
     }
-    void add_queries(Vec3 a, Vec3 b, Vec3 c, std::vector<double>& queries) const {
-        for (const Vec3 w : grid_) {
-            const Vec3 p = w.x * a + w.y * b + w.z * c;
-            queries.insert(queries.end(), {p.x, p.y, p.z});
-        }
-    }
-    void add_queries(std::int32_t f, std::vector<double>& queries) const {
-        const auto [a, b, c] = corners(f);
-        add_queries(a, b, c, queries);
-    }
-    double height_of(std::int32_t f, const double* back) const {
-        double most = *std::max_element(back, back + grid_.size());
-        most *= most;
-        for_samples(f, [&](std::int32_t k) { most = std::max(most, samples_.squared_distance[k]); });
-        return std::sqrt(most);
+
+    /// Heights of all faces: each place once, be it on several.
+    void find_back(const Execution& run) {
+        const auto in_blocks = [&](std::size_t count, auto&& body) {
+            for_blocks(count, 1 << 9, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
+                for (; i < end; ++i) body(i);
+            });
+        };
+        std::vector<double> of_vertex(mesh_.first.size()), of_side(mesh_.vertex.size(), 0);
+        in_blocks(of_vertex.size(), [&](std::size_t v) {
+            const Vec3 p = mesh_.position[v];
+            Nearest nearest{p};
+            mesh_.for_corners(static_cast<std::int32_t>(v), [&](std::int32_t c) { look(c / 3, nearest); });
+            of_vertex[v] = closest_face(fine_, p, guess(nearest), low_).squared;
+        });
+        in_blocks(of_side.size(), [&](std::size_t c) {
+            const auto corner = static_cast<std::int32_t>(c);
+            const std::int32_t twin = mesh_.twin(corner);
+            if (twin > corner) return;
+            const Vec3 a = mesh_.position[mesh_.vertex[RingMesh::after(corner)]],
+                       b = mesh_.position[mesh_.vertex[RingMesh::before(corner)]];
+            for (int i = 1; i < steps_; ++i) {
+                const double t = static_cast<double>(i) / steps_;
+                const Vec3 p = (1 - t) * a + t * b;
+                Nearest nearest{p};
+                look(corner / 3, nearest);
+                if (twin >= 0) look(twin / 3, nearest);
+                of_side[c] = std::max(of_side[c], closest_face(fine_, p, guess(nearest), low_).squared);
+            }
+        });
+        in_blocks(height_.size(), [&](std::size_t i) {
+            const auto f = static_cast<std::int32_t>(i);
+            height_[i] = there(f);
+            const auto [a, b, c] = corners(f);
+            for (const Vec3 w : grid_) {
+                if (!(w.x > 0 && w.y > 0 && w.z > 0)) continue;
+                Nearest nearest{w.x * a + w.y * b + w.z * c};
+                look(f, nearest);
+                height_[i] = std::max(height_[i], closest_face(fine_, nearest.to, guess(nearest), low_).squared);
+            }
+            for (std::int32_t k = 3 * f; k < 3 * f + 3; ++k) {
+                const std::int32_t twin = mesh_.twin(k);
+                height_[i] = std::max({height_[i], of_vertex[mesh_.vertex[k]], of_side[twin > k ? twin : k]});
+            }
+        });
     }
 
     std::array<Vec3, 3> corners(std::int32_t f) const {
         const std::int32_t* v = &mesh_.vertex[3 * f];
         return {mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]]};
     }
+    TriangleHit from_face(std::int32_t f, Vec3 p) const {
+        const auto [a, b, c] = corners(f);
+        return closest_on_triangle(p, a, b, c);
+    }
+
+    /// From the fine surface to a face.
+    double there(std::int32_t f) const {
+        double most = 0;
+        for_samples(f, [&](std::int32_t k) { most = std::max(most, squared_[k]); });
+        return most;
+    }
+
+    struct Far {
+        double squared = 0;
+        std::int32_t face = -1;  ///< of the fine surface, the closest to …
+        Vec3 from;               ///< … this place
+    };
+    /// The place of a triangle that is furthest from the fine surface; no more than is needed to see that it is at
+    /// least `enough` away. \param near  the face of the coarse mesh that the triangle is, or might become.
+    Far back(std::int32_t near, const std::array<Vec3, 3>& triangle, double enough) const {
+        Far furthest;
+        FaceHit last;
+        for (const Vec3 w : grid_) {
+            const Vec3 p = w.x * triangle[0] + w.y * triangle[1] + w.z * triangle[2];
+            // Begin where the place before was, or with the nearest centre.
+            if (last.face >= 0) last = hit_of(fine_, last.face, p);
+            if (last.squared > low_) {
+                Nearest nearest{p};
+                look(near, nearest);
+                const FaceHit other = guess(nearest);
+                if (other.squared < last.squared) last = other;
+            }
+            last = closest_face(fine_, p, last, low_);
+            if (last.squared > furthest.squared) furthest = {last.squared, last.face, p};
+            if (furthest.squared >= enough) break;
+        }
+        return furthest;
+    }
+    /// The centre nearest to a place, which most often is of the fine face closest to it.
+    struct Nearest {
+        Vec3 to;
+        double least = std::numeric_limits<double>::infinity();
+        std::int32_t centre = -1;
+    };
+    /// Among those that had the face.
+    void look(std::int32_t f, Nearest& nearest) const {
+        rows_.for_each(f, [&](std::int32_t i) {
+            if (3 * static_cast<std::size_t>(i) >= fine_.corners.size()) return;
+            const double apart = squared(nearest.to - centres_.point[i]);
+            if (apart < nearest.least) nearest.least = apart, nearest.centre = i;
+        });
+    }
+    FaceHit guess(const Nearest& nearest) const {
+        return nearest.centre < 0 ? FaceHit{} : hit_of(fine_, nearest.centre, nearest.to);
+    }
 
     /// The greatest distance around v, were it at p; no more than is needed to see that it is at least `enough`.
     double height_at(std::int32_t v, Vec3 p, double enough) {
         ring_.clear();
-        queries_.clear();
         mesh_.for_corners(v, [&](std::int32_t c) {
-            const Vec3 s = mesh_.position[mesh_.vertex[RingMesh::after(c)]],
-                       t = mesh_.position[mesh_.vertex[RingMesh::before(c)]];
-            ring_.push_back({s, t});
-            add_queries(p, s, t, queries_);
+            ring_.push_back({p, mesh_.position[mesh_.vertex[RingMesh::after(c)]],
+                             mesh_.position[mesh_.vertex[RingMesh::before(c)]]});
         });
         double most = 0;
         mesh_.for_corners(v, [&](std::int32_t c) {
             for_samples(c / 3, [&](std::int32_t k) {
-                if (most >= enough * enough) return;
+                if (most >= enough) return;
                 double least = std::numeric_limits<double>::infinity();
-                for (const auto& [s, t] : ring_)
-                    least = std::min(least, closest_on_triangle(samples_.point[k], p, s, t).squared);
+                for (const auto& [a, s, t] : ring_)
+                    least = std::min(least, closest_on_triangle(vertices_.point[k], a, s, t).squared);
                 // It may be nearer to a face further out, as it was before.
                 most = std::max(most, least);
             });
         });
-        most = std::sqrt(most);
-        if (most >= enough) return most;
-        const std::vector<double> back = fine_.distances(queries_, {1, {}});
-        return std::max(most, *std::max_element(back.begin(), back.end()));
+        std::size_t i = 0;
+        mesh_.for_corners(v, [&](std::int32_t c) {
+            const std::array<Vec3, 3>& triangle = ring_[i++];
+            if (most < enough) most = std::max(most, back(c / 3, triangle, enough).squared);
+        });
+        return most;
     }
 
     /// From the point around v that is furthest from the fine surface, to there.
-    Vec3 way_back(std::int32_t v) {
-        queries_.clear();
-        mesh_.for_corners(v, [&](std::int32_t c) { add_queries(c / 3, queries_); });
-        const ClosestPoints found = fine_.closest(queries_, {1, {}});
-        const auto furthest = std::max_element(found.distance.begin(), found.distance.end()) - found.distance.begin();
-        return load(&found.points[3 * furthest]) - load(&queries_[3 * furthest]);
+    Vec3 way_back(std::int32_t v) const {
+        Far furthest;
+        mesh_.for_corners(v, [&](std::int32_t c) {
+            const Far far = back(c / 3, corners(c / 3), HUGE_VAL);
+            if (far.squared > furthest.squared) furthest = far;
+        });
+        if (furthest.face < 0) return {};
+        const std::int32_t* e = &fine_.corners[3 * furthest.face];
+        const Vec3 a = fine_.positions[e[0]], b = fine_.positions[e[1]], c = fine_.positions[e[2]];
+        const TriangleHit hit = closest_on_triangle(furthest.from, a, b, c);
+        return hit.u * a + hit.v * b + hit.w * c - furthest.from;
+    }
+
+    /// From the ring around v to the sample that is furthest from it.
+    Vec3 way_out(std::int32_t v) const {
+        Vec3 way;
+        double furthest = 0;
+        mesh_.for_corners(v, [&](std::int32_t corner) {
+            for_samples(corner / 3, [&](std::int32_t k) {
+                if (squared_[k] <= furthest) return;
+                furthest = squared_[k];
+                const auto [a, b, c] = corners(corner / 3);
+                const TriangleHit hit = closest_on_triangle(vertices_.point[k], a, b, c);
+                way = vertices_.point[k] - (hit.u * a + hit.v * b + hit.w * c);
+            });
+        });
+        return way;
     }
 
     bool improve(std::int32_t v) {
         if (mesh_.kind[v] != VertexKind::free) return false;
-        const Vec3 at = mesh_.position[v];
-        double best = height_at(v, at, std::numeric_limits<double>::infinity());
-        const double before = best;
+        const Vec3 at = mesh_.position[v], out = way_out(v), back_there = way_back(v);
+        const double before = height_at(v, at, HUGE_VAL);
+        double best = before;
         Vec3 place = at;
-        // Towards the sample that is furthest from the ring, and back to the fine surface.
-        Vec3 pull;
-        double furthest = -1;
-        mesh_.for_corners(v, [&](std::int32_t c) {
-            for_samples(c / 3, [&](std::int32_t k) {
-                if (samples_.squared_distance[k] <= furthest) return;
-                const auto [a, b, d] = corners(c / 3);
-                const Vec3 w = samples_.weights[k];
-                furthest = samples_.squared_distance[k];
-                pull = samples_.point[k] - (w.x * a + w.y * b + w.z * d);
-            });
-        });
-        const Vec3 back = way_back(v);
-        for (const Vec3 step : {0.25 * pull, 0.5 * pull, pull, 1.5 * pull, 0.25 * back, 0.5 * back, back, 1.5 * back,
-                                0.5 * (back + pull)}) {
+        for (const Vec3 step : {0.25 * out, 0.5 * out, out, 1.5 * out, 0.25 * back_there, 0.5 * back_there, back_there,
+                                1.5 * back_there, 0.5 * (back_there + out)}) {
             const Vec3 p = at + step;
             if (mesh_.folds(v, p)) continue;
             const double height = height_at(v, p, best);
-            if (height < 0.98 * best) best = height, place = p;
+            if (height < 0.96 * best) best = height, place = p;
         }
         if (best >= before) return false;
         mesh_.position[v] = place;
         reassign(v);
-        queries_.clear();
-        mesh_.for_corners(v, [&](std::int32_t c) { add_queries(c / 3, queries_); });
-        const std::vector<double> distances = fine_.distances(queries_, {1, {}});
-        std::size_t i = 0;
         mesh_.for_corners(v, [&](std::int32_t c) {
-            height_[c / 3] = height_of(c / 3, &distances[grid_.size() * i++]);
-            queue_.push({height_[c / 3], c / 3});
+            const std::int32_t f = c / 3;
+            height_[f] = std::max(there(f), back(f, corners(f), HUGE_VAL).squared);
+            if (height_[f] > low_) queue_.push({height_[f], f});
         });
         return true;
     }
 
-    /// The samples of the faces around v, within these; `assign` finds others later.
+    /// The samples of the faces around v, within these.
     void reassign(std::int32_t v) {
         met_.clear();
         mesh_.for_corners(v, [&](std::int32_t c) {
@@ -183,38 +274,37 @@ class Peaks {
             first_[c / 3] = -1;
         });
         for (const std::int32_t k : met_) {
-            samples_.squared_distance[k] = std::numeric_limits<double>::infinity();
+            squared_[k] = std::numeric_limits<double>::infinity();
             mesh_.for_corners(v, [&](std::int32_t c) {
-                const auto [p, s, t] = corners(c / 3);
-                const TriangleHit hit = closest_on_triangle(samples_.point[k], p, s, t);
-                if (hit.squared >= samples_.squared_distance[k]) return;
-                samples_.face[k] = c / 3;
-                samples_.squared_distance[k] = hit.squared;
-                samples_.weights[k] = {hit.u, hit.v, hit.w};
+                const double found = from_face(c / 3, vertices_.point[k]).squared;
+                if (found < squared_[k]) squared_[k] = found, vertices_.face[k] = c / 3;
             });
             put(k);
         }
     }
 
     RingMesh& mesh_;
-    FitSamples& samples_;
-    const ClosestIndex& fine_;
-    Execution run_;
-    std::vector<std::int32_t> first_, next_;  ///< the first sample of each face, and the next of the same face
-    std::vector<Vec3> grid_;                  ///< weights of the points of a face from which distances are taken
-    std::vector<double> height_;
+    const AreaSamples& centres_;
+    VertexSamples& vertices_;
+    const FaceBoxes& fine_;
+    FaceSamples rows_;                        ///< the centres of each face as it was
+    std::vector<std::int32_t> first_, next_;  ///< the first vertex of each face, and the next of the same face
+    std::vector<double>& squared_;            ///< distance of each vertex
+    std::vector<double> height_;              ///< of each face
+    double low_ = 0;
+    int steps_ = 0;           ///< of a side, in …
+    std::vector<Vec3> grid_;  ///< weights of the points of a face from which distances are taken
     std::priority_queue<std::pair<double, std::int32_t>>
         queue_;  ///< faces by height, also those that have changed since
-    std::vector<double> queries_;
+    std::vector<std::array<Vec3, 3>> ring_;
     std::vector<std::int32_t> met_;
-    std::vector<std::pair<Vec3, Vec3>> ring_;
 };
 
 }  // namespace
 
-std::size_t lower_peaks(RingMesh& coarse, FitSamples& samples, const ClosestIndex& fine, std::size_t most_steps,
+std::size_t lower_peaks(RingMesh& coarse, const AreaSamples& centres, VertexSamples& vertices, const FaceBoxes& fine,
                         const Execution& run) {
-    return Peaks(coarse, samples, fine, run).lower(most_steps);
+    return Peaks(coarse, centres, vertices, fine).lower(run);
 }
 
 }  // namespace gaussmap

@@ -99,4 +99,25 @@ SurfaceSamples surface_samples(Points vertices, Triangles faces, std::size_t sam
     return made;
 }
 
+Deviation deviation_of(const std::vector<double>& distance, const SampleCounts& counts) {
+    const std::size_t first = counts.faces > 0   ? counts.vertices + counts.edges
+                              : counts.edges > 0 ? counts.vertices
+                                                 : 0;
+    Deviation deviation;
+    for (const double d : distance) deviation.max = std::max(deviation.max, d);
+    // Added up as a tree would, so that a million small terms lose nothing.
+    constexpr std::size_t block = 1024;
+    double sum = 0, squares = 0;
+    for (std::size_t i = first; i < distance.size();) {
+        double part = 0, part_squares = 0;
+        for (const std::size_t end = std::min(distance.size(), i + block); i < end; ++i)
+            part += distance[i], part_squares += distance[i] * distance[i];
+        sum += part, squares += part_squares;
+    }
+    const auto count = static_cast<double>(distance.size() - first);
+    deviation.mean = sum / count;
+    deviation.rms = std::sqrt(squares / count);
+    return deviation;
+}
+
 }  // namespace gaussmap

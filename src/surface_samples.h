@@ -22,6 +22,10 @@ struct SurfaceSamples {
 SurfaceSamples surface_samples(Points vertices, Triangles faces, std::size_t samples, std::uint64_t seed,
                                const Execution& run);
 
+/// Of the distances of all samples the maximum, of those on faces (else on edges, else of all) the mean and the root
+/// mean square.
+Deviation deviation_of(const std::vector<double>& distance, const SampleCounts& counts);
+
 /// A point of the unit square that R_2, the sequence of Roberts (2018, "The unreasonable effectiveness of quasirandom
 /// sequences"), visits after `step` steps, shifted: any few in a row are spread evenly.
 struct SquarePoint {

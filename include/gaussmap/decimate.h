@@ -12,8 +12,8 @@ namespace gaussmap {
 
 enum class DecimationMethod {
     /// Collapses by the quadrics of the surface as it is; then the vertices that are left are fitted to samples of the
-    /// original, sides are flipped, vertices go from where they are little needed to where they help, and the greatest
-    /// distances are brought down one by one. Section "Decimation" of docs/method.md.
+    /// original, sides are flipped, and the greatest distances are brought down one by one. Section "Decimation" of
+    /// docs/method.md.
     best,
     /// Quadric error metric, optimal placement; quadrics weigh by the total curvature (the paper's second pipeline).
     /// Without weights: Garland and Heckbert, "Surface Simplification Using Quadric Error Metrics", SIGGRAPH 1997.
@@ -43,6 +43,7 @@ struct DecimateOptions {
     /// Sides whose faces' normals differ by more than this, in degrees, are features, along which collapses run.
     double feature_angle = 180;
     bool allow_topology = false;  ///< holes and slits may close
+    bool measure = false;         ///< find the distances of the result from the input
     bool sources = false;         ///< make the sources of the result, by which values are carried over
     /// A byte a corner, 3 a face, or empty: not 0 where the side opposite to the corner is a seam, kept as borders are.
     std::vector<std::uint8_t> seams;
@@ -70,14 +71,16 @@ struct Decimation {
     std::vector<SurfacePoint>
         corner_source;  ///< 3 a face: the same on the face's side of the seams; empty without seams
     DecimationStop stop = DecimationStop::target;
-    double error_bound = 0;            ///< proven, over the diagonal, where an error was asked for
-    std::size_t degenerate = 0;        ///< faces of the input left out: a corner repeated
-    std::size_t non_finite = 0;        ///< faces of the input left out: a corner that is not finite
+    double error_bound = 0;      ///< proven, over the diagonal, where an error was asked for
+    double max_error = 0;        ///< over the diagonal, both ways, from 100,000 samples, where it was to be measured
+    double rms_error = 0;        ///< … the root mean square
+    std::size_t degenerate = 0;  ///< faces of the input left out: a corner repeated
+    std::size_t non_finite = 0;  ///< faces of the input left out: a corner that is not finite
     std::size_t refused_locked = 0;    ///< where stopped by validity, sides that could not collapse: between vertices
                                        ///< that must stay, or across a border, seam or feature
     std::size_t refused_topology = 0;  ///< … that would have changed the topology
     std::size_t refused_folding = 0;   ///< … that would have folded the surface or made a sliver
-    double seconds_collapse = 0, seconds_fit = 0;
+    double seconds_collapse = 0, seconds_fit = 0, seconds_measure = 0;
 };
 
 /// Fewer triangles for the same surface.

@@ -124,12 +124,19 @@ TEST(DecimateThreads, SameBitsForAnyNumberOfThreads) {
     const Surface s = gaussmap::bumpy_sphere(1, 0.2, 5, 5, {0.2, 0, 3});
     for (const Way& way : ways) {
         DecimateOptions options = to(1500, way);
+        options.measure = options.sources = true;
         options.run.threads = 1;
         const Decimation one = decimate(s.vertices, s.faces, options);
         options.run.threads = 3;
         const Decimation three = decimate(s.vertices, s.faces, options);
         EXPECT_EQ(one.faces, three.faces) << way.name;
         EXPECT_TRUE(support::same_bits(one.vertices, three.vertices)) << way.name;
+        EXPECT_EQ(one.max_error, three.max_error) << way.name;
+        EXPECT_EQ(one.rms_error, three.rms_error) << way.name;
+        for (std::size_t v = 0; v < one.vertex_source.size(); ++v) {
+            ASSERT_EQ(one.vertex_source[v].face, three.vertex_source[v].face) << way.name;
+            ASSERT_EQ(one.vertex_source[v].weights, three.vertex_source[v].weights) << way.name;
+        }
     }
 }
 
