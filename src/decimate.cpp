@@ -12,13 +12,13 @@
 
 #include "check.h"
 #include "clock.h"
+#include "collapse_passes.h"
 #include "decimation_error.h"
 #include "decimation_input.h"
 #include "decimation_sources.h"
 #include "face_boxes.h"
 #include "gaussmap/curvature.h"
 #include "gaussmap/distance.h"
-#include "greedy_collapse.h"
 #include "parallel.h"
 #include "ring_mesh.h"
 #include "surface_rounds.h"
@@ -37,22 +37,27 @@ void check(Points vertices, Triangles faces, const DecimateOptions& options) {
         throw std::invalid_argument("error = " + std::to_string(options.error) + " must be finite and not negative");
 }
 
-/// (density / median)^exponent of each vertex, held within a factor of 16 of 1 so that neither planes nor creases rule
-/// alone.
-std::vector<double> curvature_weights(const DecimationInput& in, double exponent, const Execution& run) {
-    std::vector<double> weight(in.positions.size(), 1);
-    const std::vector<double> flat = in.flat();
-    MeshCurvatureOptions options;
-    options.run.threads = run.threads;
-    const std::vector<double> density = mesh_curvature(flat, in.corners, {}, options).density;
-    std::vector<double> defined;
-    for (const double d : density)
-        if (d > 0 && std::isfinite(d)) defined.push_back(d);
+/// √(density / median) of each vertex, or the root of that, held within a factor of 16 of 1 so that neither planes nor
+/// creases rule alone.
+std::vector<float> curvature_weights(const DecimationInput& in, bool fourth_root, const Execution& run) {
+    std::vector<float> weight(in.positions.size(), 1);
+    std::vector<double> sums(2 * in.positions.size());
+    {
+        const Points points = in.points();
+        const std::vector<double> normals = mesh_normals(points, in.corners, NormalWeights::max, {run.threads, {}});
+        vertex_density(points, in.corners, normals, sums.data(), {run.threads, {}});
+    }
+    std::vector<float> defined;
+    for (std::size_t v = 0; v < weight.size(); ++v)
+        if (const double d = sums[2 * v]; d > 0 && std::isfinite(d)) defined.push_back(static_cast<float>(d));
     if (defined.empty()) return weight;
     const auto middle = defined.begin() + static_cast<std::ptrdiff_t>(defined.size() / 2);
     std::nth_element(defined.begin(), middle, defined.end());
-    for (std::size_t v = 0; v < density.size(); ++v)
-        if (std::isfinite(density[v])) weight[v] = std::clamp(std::pow(density[v] / *middle, exponent), 1.0 / 16, 16.0);
+    for (std::size_t v = 0; v < weight.size(); ++v) {
+        const double root = std::sqrt(sums[2 * v] / *middle);
+        if (std::isfinite(root))
+            weight[v] = static_cast<float>(std::clamp(fourth_root ? std::sqrt(root) : root, 1.0 / 16, 16.0));
+    }
     return weight;
 }
 
@@ -79,18 +84,20 @@ RingMesh tagged_mesh(const DecimationInput& in, const DecimateOptions& options) 
 }
 
 std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, const DecimateOptions& options) {
-    GreedyOptions greedy;
-    greedy.cost = options.method == DecimationMethod::edge                  ? CollapseCost::length
-                  : options.method == DecimationMethod::qem || options.fast ? CollapseCost::inherited
-                                                                            : CollapseCost::present;
-    greedy.faces = options.faces;
-    greedy.border_weight = options.preserve_boundary ? 1000 : 1;
-    greedy.allow_topology = options.allow_topology;
-    greedy.run = part_of(options.run, 0.05, 0.5);
-    if (!options.weights) return collapse_cheapest(mesh, std::vector<double>(in.positions.size(), 1), greedy);
-    // What is fitted afterwards needs less of a push: a half measured worse in the mean and no better at the maximum.
-    const double exponent = greedy.cost == CollapseCost::present ? 0.25 : 0.5;
-    return collapse_cheapest(mesh, curvature_weights(in, exponent, options.run), greedy);
+    CollapseOptions passes;
+    passes.cost = options.method == DecimationMethod::edge  ? CollapseCost::length
+                  : options.method == DecimationMethod::qem ? CollapseCost::inherited
+                  // The fit mends what costs without a memory lose: thin parts.
+                  : options.fast ? CollapseCost::carried
+                                 : CollapseCost::present;
+    passes.faces = options.faces;
+    passes.border_weight = options.preserve_boundary ? 1000 : 1;
+    passes.allow_topology = options.allow_topology;
+    passes.run = part_of(options.run, 0.05, 0.5);
+    std::vector<float> weight = options.weights
+                                    ? curvature_weights(in, options.method == DecimationMethod::best, options.run)
+                                    : std::vector<float>(in.positions.size(), 1);
+    return collapse_in_passes(mesh, std::move(weight), passes);
 }
 
 /// The sides that are left, counted by why they cannot collapse.
@@ -113,48 +120,17 @@ void count_refusals(RingMesh& mesh, bool allow_topology, Decimation& out) {
     }
 }
 
-/// The mesh that is left, without gaps. `joined` is made to name its vertices.
-RingMesh without_gaps(const RingMesh& mesh, std::vector<std::int32_t>& joined) {
-    std::vector<std::int32_t> renamed(mesh.first.size(), -1), corners, faces;
-    std::vector<Vec3> positions;
-    std::vector<VertexKind> kinds;
-    for (std::size_t v = 0; v < mesh.first.size(); ++v) {
-        if (mesh.first[v] < 0) continue;
-        renamed[v] = static_cast<std::int32_t>(positions.size());
-        positions.push_back(mesh.position[v]);
-        kinds.push_back(mesh.kind[v]);
-    }
-    for (std::size_t f = 0; f < mesh.tags.size(); ++f) {
-        if (mesh.vertex[3 * f] < 0) continue;
-        faces.push_back(static_cast<std::int32_t>(f));
-        for (int k = 0; k < 3; ++k) corners.push_back(renamed[mesh.vertex[3 * f + k]]);
-    }
-    RingMesh out(std::move(positions), std::move(corners));
-    out.kind = std::move(kinds);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-        out.tags[f] = mesh.tags[faces[f]];
-        out.origin[f] = mesh.origin[faces[f]];
-    }
-    for (std::int32_t& v : joined) {
-        while (joined[v] != v) v = joined[v];
-    }
-    for (std::int32_t& v : joined) v = renamed[v];
-    return out;
-}
-
 Decimation decimate_to_faces(const DecimationInput& in, const FaceBoxes& fine, const DecimateOptions& options) {
     Decimation out;
     out.degenerate = in.degenerate;
     out.non_finite = in.non_finite;
     Lap watch;
-    RingMesh mesh = tagged_mesh(in, options);
-    std::vector<std::int32_t> joined = collapse(mesh, in, options);
-    if (mesh.face_count() > options.faces) {
+    RingMesh coarse = tagged_mesh(in, options);
+    const std::vector<std::int32_t> joined = collapse(coarse, in, options);
+    if (coarse.face_count() > options.faces) {
         out.stop = DecimationStop::validity;
-        count_refusals(mesh, options.allow_topology, out);
+        count_refusals(coarse, options.allow_topology, out);
     }
-    RingMesh coarse = without_gaps(mesh, joined);
-    mesh = RingMesh({}, {});
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
     const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;

@@ -9,6 +9,8 @@
 
 namespace gaussmap {
 
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "positions are read as three doubles each");
+
 /// The faces of three distinct finite corners and their vertices, in a box of diagonal 1 about the origin. Vertices and
 /// faces are in an order of space: near ones are near each other in memory, and the order in the input matters no more.
 struct DecimationInput {
@@ -21,6 +23,7 @@ struct DecimationInput {
     std::size_t degenerate = 0, non_finite = 0;  ///< faces left out
 
     std::vector<double> flat() const;  ///< positions, 3 a vertex
+    Points points() const { return {positions.empty() ? nullptr : &positions.front().x, positions.size()}; }
 };
 
 DecimationInput decimation_input(Points vertices, Triangles faces, const Execution& run);

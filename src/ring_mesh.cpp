@@ -40,6 +40,10 @@ RingMesh::RingMesh(std::vector<Vec3> positions, std::vector<std::int32_t> corner
       mark_(position.size(), 0),
       faces_(vertex.size() / 3) {
     std::iota(origin.begin(), origin.end(), 0);
+    link_all();
+}
+
+void RingMesh::link_all() {
     // From the last, so that rings run through the faces in their order.
     for (std::size_t c = vertex.size(); c-- > 0;) link(static_cast<std::int32_t>(c), vertex[c]);
 }
@@ -80,8 +84,31 @@ void RingMesh::gather(std::int32_t v) {
     for_corners(v, [&](std::int32_t c) { sectors_.push_back({c, vertex[after(c)], vertex[before(c)]}); });
 }
 
+bool RingMesh::closed_fan(std::int32_t v) {
+    // Every neighbour comes after v in one face and before it in one.
+    const std::uint32_t after_v = new_marks(2), both = after_v + 1;
+    bool regular = true;
+    std::size_t degree = 0;
+    for_corners(v, [&](std::int32_t c) {
+        std::uint32_t& mark = mark_[vertex[after(c)]];
+        regular &= mark != after_v;
+        mark = after_v, ++degree;
+    });
+    for_corners(v, [&](std::int32_t c) {
+        std::uint32_t& mark = mark_[vertex[before(c)]];
+        regular &= mark == after_v;
+        mark = both;
+    });
+    if (!regular) return false;
+    gather(v);
+    return degree == 0 || all_in_one_fan();
+}
+
 void RingMesh::tag_irregular_sides() {
     for (std::size_t v = 0; v < first.size(); ++v) {
+        const bool plain = closed_fan(static_cast<std::int32_t>(v));
+        kind[v] = plain ? VertexKind::free : VertexKind::corner;
+        if (plain) continue;
         gather(static_cast<std::int32_t>(v));
         for (const Sector& here : sectors_) {
             for (const std::int32_t w : {here.from, here.to}) {
@@ -155,12 +182,49 @@ VertexKind RingMesh::kind_of(std::int32_t v) {
 }
 
 void RingMesh::find_kinds() {
-    for (std::size_t v = 0; v < first.size(); ++v) kind[v] = kind_of(static_cast<std::int32_t>(v));
+    for (std::size_t c = 0; c < vertex.size(); ++c)
+        if (tags[c / 3] != 0) kind[vertex[c]] = VertexKind::corner;
+    for (std::size_t v = 0; v < first.size(); ++v)
+        if (kind[v] != VertexKind::free) kind[v] = kind_of(static_cast<std::int32_t>(v));
+}
+
+std::vector<std::int32_t> RingMesh::close_gaps() {
+    std::vector<std::int32_t> renamed(first.size(), -1);
+    std::int32_t vertices = 0;
+    for (std::size_t v = 0; v < first.size(); ++v) {
+        if (first[v] < 0) continue;
+        position[vertices] = position[v];
+        kind[vertices] = kind[v];
+        renamed[v] = vertices++;
+    }
+    std::size_t faces = 0;
+    for (std::size_t f = 0; f < tags.size(); ++f) {
+        if (vertex[3 * f] < 0) continue;
+        for (std::size_t k = 0; k < 3; ++k) vertex[3 * faces + k] = renamed[vertex[3 * f + k]];
+        tags[faces] = tags[f];
+        origin[faces++] = origin[f];
+    }
+    position.resize(vertices), kind.resize(vertices), mark_.resize(vertices);
+    vertex.resize(3 * faces), next_.resize(3 * faces), tags.resize(faces), origin.resize(faces);
+    first.assign(vertices, -1);
+    link_all();
+    return renamed;
+}
+
+/// Both have closed fans of untagged sides: every neighbour is met once, and the side has two faces.
+Refusal RingMesh::free_refusal(std::int32_t a, std::int32_t b) {
+    const std::uint32_t mark = new_marks(1);
+    int common = 0, degree_a = 0, degree_b = 0;
+    for_corners(a, [&](std::int32_t c) { mark_[vertex[after(c)]] = mark, ++degree_a; });
+    for_corners(b, [&](std::int32_t c) { common += mark_[vertex[after(c)]] == mark, ++degree_b; });
+    const bool tetrahedron = degree_a == 3 && degree_b == 3;
+    return common == 2 && !tetrahedron ? Refusal::none : Refusal::topology;
 }
 
 Refusal RingMesh::refusal(std::int32_t a, std::int32_t b, bool allow_topology) {
     const VertexKind ka = kind[a], kb = kind[b];
     if (ka == VertexKind::corner && kb == VertexKind::corner) return Refusal::locked;
+    if (ka == VertexKind::free && kb == VertexKind::free && !allow_topology) return free_refusal(a, b);
     const std::uint32_t mark = new_marks(3);  // + 0: joined to a, + 1: to both, + 2: by a face on both
     for_corners(a, [&](std::int32_t c) { mark_[vertex[after(c)]] = mark_[vertex[before(c)]] = mark; });
     std::size_t common = 0, opposite = 0;

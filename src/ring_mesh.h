@@ -64,11 +64,12 @@ class RingMesh {
         });
     }
 
-    /// Tag sides of one face, of three and more, and of two that run the same way. Time O(sum of degrees²).
+    /// Tag sides of one face, of three and more, and of two that run the same way.
     void tag_irregular_sides();
     /// Tag sides whose faces' normals differ by more than this.
     void tag_features(double cosine);
-    /// The kinds, from the tags and from how many fans a vertex has.
+    /// The kinds, from the tags and from how many fans a vertex has. After `tag_irregular_sides`, which tells the plain
+    /// vertices from those that need a closer look.
     void find_kinds();
 
     /// Why a and b may not become one vertex, wherever it is put.
@@ -78,6 +79,9 @@ class RingMesh {
     bool folds(std::int32_t a, std::int32_t b, Vec3 p) const;
     /// Would a face of v turn over, or become a sliver, with v at p?
     bool folds(std::int32_t v, Vec3 p) const { return turns(v, -1, p); }
+    /// Vertices and faces that have gone give up their places; the order stays.
+    /// \return the new number of each vertex, −1 of those that have gone.
+    std::vector<std::int32_t> close_gaps();
     /// b joins a at p; the faces on both go.
     void collapse(std::int32_t a, std::int32_t b, Vec3 p);
 
@@ -88,6 +92,9 @@ class RingMesh {
 
   private:
     std::uint32_t new_marks(std::uint32_t count);
+    void link_all();
+    bool closed_fan(std::int32_t v);
+    Refusal free_refusal(std::int32_t a, std::int32_t b);
     bool turns(std::int32_t v, std::int32_t but_of, Vec3 p) const;
     void unlink(std::int32_t corner);
     void link(std::int32_t corner, std::int32_t v);
