@@ -106,14 +106,17 @@ TEST(Decimate, ThePlaneStaysThePlane) {
 }
 
 TEST(Decimate, BestIsNearerThanQemAndQemThanEdge) {
-    const Surface s = gaussmap::bumpy_sphere(1, 0.15, 6, 5, {0.2, 0, 3});
-    double rms[3], most[3];
+    // The maximum is one point of one mesh: means of three.
+    double rms[3] = {}, most[3] = {};
     const DecimationMethod methods[] = {DecimationMethod::best, DecimationMethod::qem, DecimationMethod::edge};
-    for (int i = 0; i < 3; ++i) {
-        DecimateOptions options = to(1000);
-        options.method = methods[i];
-        const auto found = distance(s, decimate(s.vertices, s.faces, options));
-        rms[i] = found.symmetric.rms, most[i] = found.symmetric.max;
+    for (const unsigned seed : {1u, 2u, 3u}) {
+        const Surface s = gaussmap::bumpy_sphere(1, 0.15, 6, 5, {0.2, 0, seed});
+        for (int i = 0; i < 3; ++i) {
+            DecimateOptions options = to(1000);
+            options.method = methods[i];
+            const auto found = distance(s, decimate(s.vertices, s.faces, options));
+            rms[i] += found.symmetric.rms, most[i] += found.symmetric.max;
+        }
     }
     EXPECT_LT(rms[0], 0.8 * rms[1]);
     EXPECT_LT(rms[1], 0.6 * rms[2]);
