@@ -76,12 +76,13 @@ class Passes {
         double at(Vec3 x) const { return std::max(0.0, dot(x, a.times(x) - 2 * g) + c); }
     };
 
-    /// Vertices to take in a pass: half of them far from the target, few near to it, never more than there are to go.
+    /// Vertices to offer in a pass: all of them far from the target, few near to it, never more than there are to go.
+    /// About half of them can be taken, the others having met one that was.
     std::size_t share(std::size_t faces) const {
         const double vertices = 0.5 * static_cast<double>(faces);
         const std::size_t excess = (faces - options_.faces + 1) / 2;
         const double part = static_cast<double>(excess) / vertices;
-        return std::clamp(static_cast<std::size_t>((0.1 + 0.5 * part * part) * vertices), std::size_t{1}, excess);
+        return std::clamp(static_cast<std::size_t>((0.2 + 1.5 * part * part) * vertices), std::size_t{1}, excess);
     }
 
     /// The key of which no more than `wanted` are below.
@@ -138,8 +139,8 @@ class Passes {
 
     /// \param half  of the edge, from a to its middle.
     EdgeQuadric sum_of(std::int32_t a, std::int32_t b, Vec3 half) const {
-        EdgeQuadric sum{shape_[a] + shape_[b], (shape_[b] - shape_[a]).times(half), 0};
-        sum.c = dot(half, sum.a.times(half));
+        const Vec3 of_a = shape_[a].times(half), of_b = shape_[b].times(half);
+        EdgeQuadric sum{shape_[a] + shape_[b], of_b - of_a, dot(half, of_a + of_b)};
         if (!rest_.empty()) {
             sum.g = sum.g + rest_[a].b + rest_[b].b;
             sum.c += rest_[a].c + rest_[b].c - 2 * dot(rest_[a].b - rest_[b].b, half);
@@ -156,7 +157,7 @@ class Passes {
         const double flat = 4 * flat_cost * sum.a.trace() * squared(half), held = pull * sum.a.trace();
         if (ka != kb) return flat + sum.at(ka > kb ? -half : half);
         if (!(held > 0)) return flat;
-        return flat + std::max(0.0, sum.c - HeldFactors(sum.a, held).energy(sum.g));
+        return flat + std::max(0.0, sum.c - HeldInverse(sum.a, held).energy(sum.g));
     }
 
     /// Where a and b join.
@@ -167,22 +168,25 @@ class Passes {
         if (options_.cost == CollapseCost::length) return middle;
         const EdgeQuadric sum = sum_of(a, b, 0.5 * (pb - pa));
         const double held = pull * sum.a.trace();
-        const Vec3 p = held > 0 ? middle + HeldFactors(sum.a, held).solve(sum.g) : middle;
+        const Vec3 p = held > 0 ? middle + HeldInverse(sum.a, held).times(sum.g) : middle;
         return finite(p) ? p : middle;
     }
 
     /// The cheapest partner of a higher number, ties by index: each edge is looked at from one of its ends.
     void choose(std::int32_t v) {
-        std::pair<double, std::int32_t> found{never, -1};
+        double least = never;
+        std::int32_t partner = -1;
         const auto offer = [&](std::int32_t w) {
-            if (w > v) found = std::min(found, {cost(v, w), w});
+            if (w < v) return;
+            const double at = cost(v, w);
+            if (at < least || (at == least && w < partner)) least = at, partner = w;
         };
         mesh_.for_corners(v, [&](std::int32_t c) {
             // On a closed fan every neighbour comes after v in one face.
             offer(mesh_.vertex[RingMesh::after(c)]);
             if (mesh_.kind[v] != VertexKind::free) offer(mesh_.vertex[RingMesh::before(c)]);
         });
-        key_[v] = static_cast<float>(found.first), partner_[v] = found.second;
+        key_[v] = static_cast<float>(least), partner_[v] = partner;
         state_[v] = fresh;
     }
 
@@ -237,9 +241,15 @@ class Passes {
         key_[b] = static_cast<float>(never), state_[b] = fresh;
         mesh_.for_corners(a, [&](std::int32_t c) {
             for (const std::int32_t w : {mesh_.vertex[RingMesh::after(c)], mesh_.vertex[RingMesh::before(c)]})
-                if (state_[w] != joined) state_[w] = stale;
+                if (state_[w] != joined && changes(w, a, b)) state_[w] = stale;
         });
         state_[a] = joined;
+    }
+
+    /// Whether the key of a neighbour may be another now that b joined a. Where shapes stay, edges to lower numbers are
+    /// not its own.
+    bool changes(std::int32_t w, std::int32_t a, std::int32_t b) const {
+        return options_.cost == CollapseCost::present || w < a || state_[w] == checked || partner_[w] == b;
     }
 
     void close_gaps() {

@@ -20,9 +20,6 @@ struct Symmetric {
     Symmetric operator+(const Symmetric& s) const {
         return {xx + s.xx, xy + s.xy, xz + s.xz, yy + s.yy, yz + s.yz, zz + s.zz};
     }
-    Symmetric operator-(const Symmetric& s) const {
-        return {xx - s.xx, xy - s.xy, xz - s.xz, yy - s.yy, yz - s.yz, zz - s.zz};
-    }
     Symmetric& operator*=(double w) {
         xx *= w, xy *= w, xz *= w, yy *= w, yz *= w, zz *= w;
         return *this;
@@ -38,36 +35,23 @@ struct Symmetric {
     }
 };
 
-/// L D Lᵀ = A + e I: with e a small part of the trace the point of least xᵀ A x − 2 g·x, held to the origin along
+/// (A + e I)⁻¹ by minors. With e a small part of the trace, the point of least xᵀ A x − 2 g·x, held to the origin along
 /// directions in which A is flat, needs no decision about the rank of A.
-class HeldFactors {
+class HeldInverse {
   public:
-    HeldFactors(const Symmetric& a, double e) {
-        r0_ = 1 / (a.xx + e), l10_ = a.xy * r0_, l20_ = a.xz * r0_;
-        const double m21 = a.yz - l20_ * a.xy;
-        r1_ = 1 / (a.yy + e - l10_ * a.xy), l21_ = m21 * r1_;
-        r2_ = 1 / (a.zz + e - l20_ * a.xz - l21_ * m21);
+    HeldInverse(const Symmetric& a, double e) {
+        const double xx = a.xx + e, yy = a.yy + e, zz = a.zz + e;
+        minors_ = {yy * zz - a.yz * a.yz, a.xz * a.yz - a.xy * zz, a.xy * a.yz - a.xz * yy,
+                   xx * zz - a.xz * a.xz, a.xy * a.xz - xx * a.yz, xx * yy - a.xy * a.xy};
+        scale_ = 1 / (xx * minors_.xx + a.xy * minors_.xy + a.xz * minors_.xz);
     }
+    Vec3 times(Vec3 g) const { return scale_ * minors_.times(g); }
     /// gᵀ (A + e I)⁻¹ g: by how much xᵀ (A + e I) x − 2 g·x falls below 0.
-    double energy(Vec3 g) const {
-        const Vec3 y = forward(g);
-        return y.x * y.x * r0_ + y.y * y.y * r1_ + y.z * y.z * r2_;
-    }
-    /// (A + e I)⁻¹ g
-    Vec3 solve(Vec3 g) const {
-        const Vec3 f = forward(g);
-        const double z = f.z * r2_, y = f.y * r1_ - l21_ * z;
-        return {f.x * r0_ - l10_ * y - l20_ * z, y, z};
-    }
+    double energy(Vec3 g) const { return scale_ * dot(g, minors_.times(g)); }
 
   private:
-    /// L⁻¹ g
-    Vec3 forward(Vec3 g) const {
-        const double y = g.y - l10_ * g.x;
-        return {g.x, y, g.z - l20_ * g.x - l21_ * y};
-    }
-
-    double r0_, l10_, l20_, r1_, l21_, r2_;  ///< 1 / D, and L below its diagonal
+    Symmetric minors_;
+    double scale_;
 };
 
 }  // namespace gaussmap

@@ -10,23 +10,26 @@ namespace {
 constexpr double least_cosine = 0.25;  ///< between a face's normals before and after a step
 constexpr double sliver = 2e-3;        ///< 2 area / Σ edge² below which a face is one; 0.289 is equilateral
 
-double sum_of_squares(Vec3 a, Vec3 b, Vec3 c) {
-    return squared(b - a) + squared(c - b) + squared(a - c);
+/// Whether a triangle of sides e, f from one corner, which become e2, f2, turns over or becomes a sliver.
+inline bool spoils(Vec3 e, Vec3 f, Vec3 e2, Vec3 f2) {
+    const Vec3 n = cross(e, f), n2 = cross(e2, f2);
+    const double nn = squared(n), nn2 = squared(n2), cosine = dot(n, n2);
+    const double l2 = squared(e2) + squared(f2) + squared(f2 - e2);
+    const bool becomes_sliver = nn2 <= sliver * sliver * l2 * l2;
+    const bool turns = cosine <= 0 || cosine * cosine < least_cosine * least_cosine * nn * nn2;
+    if (!becomes_sliver && !turns) return false;
+    const double l = squared(e) + squared(f) + squared(f - e);
+    const bool was_sliver = nn <= sliver * sliver * l * l;
+    // A sliver may become a better one.
+    if (becomes_sliver && !(was_sliver && nn2 > 0 && nn2 * l * l > nn * l2 * l2)) return true;
+    // The normal of what has no area says nothing.
+    return turns && nn > 1e-20 * l * l;
 }
 
 }  // namespace
 
 bool turns_over(Vec3 a, Vec3 b, Vec3 c, Vec3 a2, Vec3 b2, Vec3 c2) {
-    const Vec3 n = cross(b - a, c - a), n2 = cross(b2 - a2, c2 - a2);
-    const double l = sum_of_squares(a, b, c), l2 = sum_of_squares(a2, b2, c2);
-    const double nn = squared(n), nn2 = squared(n2);
-    const bool was_sliver = nn <= sliver * sliver * l * l;
-    // A sliver may become a better one.
-    if (nn2 <= sliver * sliver * l2 * l2 && !(was_sliver && nn2 > 0 && nn2 * l * l > nn * l2 * l2)) return true;
-    const double cosine = dot(n, n2);
-    // The normal of what has no area says nothing.
-    if (nn <= 1e-20 * l * l) return false;
-    return cosine <= 0 || cosine * cosine < least_cosine * least_cosine * nn * nn2;
+    return spoils(b - a, c - a, b2 - a2, c2 - a2);
 }
 
 RingMesh::RingMesh(std::vector<Vec3> positions, std::vector<std::int32_t> corners)
@@ -84,29 +87,30 @@ void RingMesh::gather(std::int32_t v) {
     for_corners(v, [&](std::int32_t c) { sectors_.push_back({c, vertex[after(c)], vertex[before(c)]}); });
 }
 
-bool RingMesh::closed_fan(std::int32_t v) {
-    // Every neighbour comes after v in one face and before it in one.
-    const std::uint32_t after_v = new_marks(2), both = after_v + 1;
-    bool regular = true;
+bool RingMesh::closed_fan(std::int32_t v, std::vector<std::int32_t>& follower) {
+    // From neighbour to neighbour: each comes after v in one face, and the way leads through all of them.
+    const std::uint32_t mark = new_marks(1);
     std::size_t degree = 0;
+    bool regular = true;
     for_corners(v, [&](std::int32_t c) {
-        std::uint32_t& mark = mark_[vertex[after(c)]];
-        regular &= mark != after_v;
-        mark = after_v, ++degree;
+        const std::int32_t w = vertex[after(c)];
+        regular &= mark_[w] != mark;
+        mark_[w] = mark, follower[w] = vertex[before(c)], ++degree;
     });
-    for_corners(v, [&](std::int32_t c) {
-        std::uint32_t& mark = mark_[vertex[before(c)]];
-        regular &= mark == after_v;
-        mark = both;
-    });
-    if (!regular) return false;
-    gather(v);
-    return degree == 0 || all_in_one_fan();
+    if (degree == 0 || !regular) return regular;
+    const std::int32_t start = vertex[after(first[v])];
+    std::int32_t at = start;
+    do {
+        if (mark_[at] != mark) return false;
+        at = follower[at], --degree;
+    } while (at != start && degree > 0);
+    return at == start && degree == 0;
 }
 
 void RingMesh::tag_irregular_sides() {
+    std::vector<std::int32_t> follower(first.size());
     for (std::size_t v = 0; v < first.size(); ++v) {
-        const bool plain = closed_fan(static_cast<std::int32_t>(v));
+        const bool plain = closed_fan(static_cast<std::int32_t>(v), follower);
         kind[v] = plain ? VertexKind::free : VertexKind::corner;
         if (plain) continue;
         gather(static_cast<std::int32_t>(v));
@@ -275,11 +279,13 @@ bool RingMesh::turns(std::int32_t v, std::int32_t but_of, Vec3 p) const {
     const std::int32_t start = first[v];
     std::int32_t c = start;
     if (start < 0) return false;
+    const Vec3 at = position[v];
     do {
         const std::int32_t s = vertex[after(c)], t = vertex[before(c)];
-        if (s != but_of && t != but_of &&
-            turns_over(position[v], position[s], position[t], p, position[s], position[t]))
-            return true;
+        if (s != but_of && t != but_of) {
+            const Vec3 ps = position[s], pt = position[t];
+            if (spoils(ps - at, pt - at, ps - p, pt - p)) return true;
+        }
         c = next_[c];
     } while (c != start);
     return false;

@@ -93,7 +93,7 @@ class RingMesh {
   private:
     std::uint32_t new_marks(std::uint32_t count);
     void link_all();
-    bool closed_fan(std::int32_t v);
+    bool closed_fan(std::int32_t v, std::vector<std::int32_t>& follower);
     Refusal free_refusal(std::int32_t a, std::int32_t b);
     bool turns(std::int32_t v, std::int32_t but_of, Vec3 p) const;
     void unlink(std::int32_t corner);
