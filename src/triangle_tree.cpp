@@ -67,8 +67,8 @@ void enclose(Boxes& boxes, int child, const Corners& corners, std::int32_t face)
     boxes.first[child] = std::min(boxes.first[child], face);
 }
 
-/// The faces by index, parted so that each run of 4·8^l is one node of level l − 1 (of leaves, for l = 0).
-std::vector<Entry> parted(Points vertices, Triangles faces, const Execution& run) {
+/// The faces' indices, parted so that each run of 4·8^l is one node of level l − 1 (of leaves, for l = 0).
+std::vector<std::int32_t> parted(Points vertices, Triangles faces, const Execution& run) {
     std::vector<Entry> entries(faces.count);
     for_blocks(faces.count, 1 << 14, part_of(run, 0, 0.1), [&](std::size_t, std::size_t f, std::size_t last) {
         for (; f < last; ++f) {
@@ -89,13 +89,15 @@ std::vector<Entry> parted(Points vertices, Triangles faces, const Execution& run
         });
         done = next;
     }
-    return entries;
+    std::vector<std::int32_t> order(entries.size());
+    std::transform(entries.begin(), entries.end(), order.begin(), [](const Entry& entry) { return entry.index; });
+    return order;
 }
 
 }  // namespace
 
 TriangleTree triangle_tree(Points vertices, Triangles faces, const Execution& run) {
-    const std::vector<Entry> entries = parted(vertices, faces, part_of(run, 0, 0.7));
+    const std::vector<std::int32_t> order = parted(vertices, faces, part_of(run, 0, 0.7));
     TriangleTree tree;
     tree.leaves.resize(block_count(faces.count, leaf_triangles));
     tree.levels.emplace_back(block_count(tree.leaves.size(), children), no_boxes());
@@ -103,11 +105,11 @@ TriangleTree triangle_tree(Points vertices, Triangles faces, const Execution& ru
         const std::size_t begin = node * children, end = std::min(last * children, tree.leaves.size());
         for (std::size_t l = begin; l < end; ++l)
             for (int i = 0; i < leaf_triangles; ++i) {
-                const Entry& entry =
-                    entries[std::min(l * leaf_triangles + static_cast<std::size_t>(i), faces.count - 1)];
-                const Corners corners = corners_of(vertices, faces, entry.index);
-                fill(tree.leaves[l], i, entry.index, corners);
-                enclose(tree.levels[0][l / children], static_cast<int>(l % children), corners, entry.index);
+                const std::int32_t face =
+                    order[std::min(l * leaf_triangles + static_cast<std::size_t>(i), faces.count - 1)];
+                const Corners corners = corners_of(vertices, faces, face);
+                fill(tree.leaves[l], i, face, corners);
+                enclose(tree.levels[0][l / children], static_cast<int>(l % children), corners, face);
             }
     });
     while (tree.levels.back().size() > 1) tree.levels.push_back(join(tree.levels.back()));

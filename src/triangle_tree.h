@@ -31,8 +31,7 @@ struct TriangleTree {
     std::vector<std::vector<Boxes>> levels;
 };
 
-/// Of at least one triangle, all corners finite. Time O(n log n); memory 200 bytes a triangle, 32 more while it is
-/// built.
+/// Of at least one triangle, all corners finite. Time O(n log n); memory 160 bytes a triangle.
 TriangleTree triangle_tree(Points vertices, Triangles faces, const Execution& run);
 
 /// The point of the triangle in place slot % 4 of leaf slot / 4 that is closest to q, as q − point in the frame.
