@@ -33,10 +33,10 @@ struct DecimateOptions {
     double error = 0;
     DecimationMethod method = DecimationMethod::best;
     DecimationObjective objective = DecimationObjective::both;
-    /// Costs weigh by a vertex's total curvature over the median, to the power of ½ (`best` without `fast`: ¼). False:
-    /// by 1 everywhere.
+    /// Costs weigh by a vertex's total curvature over the median, to the power of ½ (`best`: ¼). False: by 1
+    /// everywhere.
     bool weights = true;
-    /// The first collapses of `best` by inherited quadrics, and nothing after them: several times faster.
+    /// Of `best` the collapses alone, by quadrics that remember the first surface: many times faster.
     bool fast = false;
     bool preserve_boundary = false;  ///< borders hold a thousand times firmer than the surface, instead of as firmly
     bool lock_border = false;  ///< no vertex of a border, seam, feature or side that is not manifold moves or goes
