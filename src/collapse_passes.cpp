@@ -76,13 +76,14 @@ class Passes {
         double at(Vec3 x) const { return std::max(0.0, dot(x, a.times(x) - 2 * g) + c); }
     };
 
-    /// Vertices to offer in a pass: all of them far from the target, few near to it, never more than there are to go.
+    /// Vertices to offer in a pass: most of them far from the target, few near to it, never more than there are to go.
     /// About half of them can be taken, the others having met one that was.
     std::size_t share(std::size_t faces) const {
         const double vertices = 0.5 * static_cast<double>(faces);
         const std::size_t excess = (faces - options_.faces + 1) / 2;
         const double part = static_cast<double>(excess) / vertices;
-        return std::clamp(static_cast<std::size_t>((0.2 + 1.5 * part * part) * vertices), std::size_t{1}, excess);
+        return std::clamp(static_cast<std::size_t>(options_.share * (1 + 7 * part * part) * vertices), std::size_t{1},
+                          excess);
     }
 
     /// The key of which no more than `wanted` are below.

@@ -19,7 +19,8 @@ enum class CollapseCost {
 
 struct CollapseOptions {
     CollapseCost cost = CollapseCost::present;
-    std::size_t faces = 0;     ///< stop here
+    std::size_t faces = 0;  ///< stop here
+    double share = 0.1;  ///< of the vertices, offered in a pass near the target: less is nearer to greedy, and slower
     double border_weight = 1;  ///< of the planes that stand on tagged sides, beside that of faces
     bool allow_topology = false;
     Execution run;

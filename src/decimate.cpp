@@ -91,6 +91,7 @@ std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, co
                   : options.fast ? CollapseCost::carried
                                  : CollapseCost::present;
     passes.faces = options.faces;
+    if (options.fast) passes.share = 0.2;
     passes.border_weight = options.preserve_boundary ? 1000 : 1;
     passes.allow_topology = options.allow_topology;
     passes.run = part_of(options.run, 0.05, 0.5);
