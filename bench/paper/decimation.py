@@ -40,12 +40,11 @@ def tables(runs):
     out = {axis: Table(f"Decimation: {axis}", columns, text=text.format(axis), cell=shown)
            for axis in AXES}
     for name in names:
-        for mesh, ratio, target, results in bench.cells(DATA / "meshes" / MESHES[name], RATIOS):
+        for (mesh,), ratio, target, results in bench.cells(DATA / "meshes" / MESHES[name], RATIOS, 1):
             versions = bench.versions()
             rows = {NAMES[peer].format(versions[peer]): (result, "") for peer, result in results.items()}
             for row, options in OURS.items():
-                _, seconds, *distances = bench.ours(mesh, target, options)
-                rows[row] = (*distances, seconds), " ".join(options)
+                rows[row] = bench.ours(mesh, target, options), " ".join(options)
             for row, (result, parameter) in sorted(rows.items(), key=lambda item: item[0] not in OURS):
                 for axis, index in AXES.items():
                     out[axis].put(row, f"{name} {100 * ratio:g} %", Value(result[index], math.nan, parameter, result[2]))
