@@ -105,7 +105,8 @@ def test_short_calls_report_their_end():
 def test_ctrl_c(call):
     """SIGINT in the middle of a call that would take long ends it by KeyboardInterrupt, and the process lives on."""
     script = f"""
-        import gaussmap, numpy
+        import gaussmap, numpy, signal
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what shells run in the background
         mesh = gaussmap.shapes.bumpy(subdivisions=8)
         points = numpy.vstack([mesh.vertices + i for i in range(4)]) + numpy.random.default_rng(0).normal(scale=.01, size=(4 * len(mesh.vertices), 3))
         print("begun", flush=True)
