@@ -76,7 +76,8 @@ def test_interrupted_promptly_with_nothing_left_behind(program, tmp_path, big, n
     process.send_signal(number)
     begin = time.monotonic()
     _, said = process.communicate(timeout=30)
-    assert (process.returncode, said) == (code, b"")
+    # A signal that comes before the program has begun ends it as the system does; shells say the same of both.
+    assert process.returncode in (code, -number) and said == b""
     assert time.monotonic() - begin < 1
     assert os.listdir(tmp_path) == ["big.ply"]
 
