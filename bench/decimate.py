@@ -199,8 +199,7 @@ def speed(bench):
             if rows:
                 _, _, _, _, _, seconds, file = rows[0].split("\t")
                 fastest[name] = min(fastest.get(name, math.inf), float(seconds))
-                bench.judge(mesh, Path(file))
-                parts[name] = bench.judged[str(Path(file).relative_to(bench.build))], None
+                parts[name] = bench.judge(mesh, Path(file)), None
         for name, options in (("--fast", ["--fast"]), ("the default", [])):
             for threads in (1, 2):
                 out = folder / "ours.off"

@@ -123,8 +123,6 @@ void count_refusals(RingMesh& mesh, bool allow_topology, Decimation& out) {
 
 Decimation decimate_to_faces(const DecimationInput& in, const FaceBoxes& fine, const DecimateOptions& options) {
     Decimation out;
-    out.degenerate = in.degenerate;
-    out.non_finite = in.non_finite;
     Lap watch;
     RingMesh coarse = tagged_mesh(in, options);
     const std::vector<std::int32_t> joined = collapse(coarse, in, options);
@@ -164,9 +162,9 @@ std::vector<double> boxed(const DecimationInput& in, const std::vector<double>& 
 }
 
 /// An upper bound of the two-sided Hausdorff distance over the diagonal; infinite where it is more than `limit`.
-/// \param flat  the input's positions, which `fine` is of.
-double proven_error(const DecimationInput& in, const std::vector<double>& flat, const ClosestIndex& index,
-                    const Decimation& made, double limit, const Execution& run) {
+/// \param index  of the input's faces.
+double proven_error(const DecimationInput& in, const ClosestIndex& index, const Decimation& made, double limit,
+                    const Execution& run) {
     if (made.faces.empty()) return std::numeric_limits<double>::infinity();
     const std::vector<double> coarse = boxed(in, made.vertices);
     HausdorffOptions options;
@@ -176,15 +174,14 @@ double proven_error(const DecimationInput& in, const std::vector<double>& flat, 
     const double back = hausdorff_bound(coarse, made.faces, index, options).upper;
     if (back > limit) return std::numeric_limits<double>::infinity();
     const double there =
-        hausdorff_bound(flat, in.corners, ClosestIndex(coarse, made.faces, options.run), options).upper;
+        hausdorff_bound(in.points(), in.corners, ClosestIndex(coarse, made.faces, options.run), options).upper;
     return there > limit ? std::numeric_limits<double>::infinity() : std::max(back, there);
 }
 
 /// Bisection of the number of faces, by ratios: the distance falls with it, if not strictly, and what is given back was
 /// proven.
 Decimation decimate_to_error(const DecimationInput& in, const FaceBoxes& fine, DecimateOptions options) {
-    const std::vector<double> flat = in.flat();
-    const ClosestIndex index(flat, in.corners, {options.run.threads, {}});
+    const ClosestIndex index(in.points(), in.corners, {options.run.threads, {}});
     options.faces = in.faces.size();
     const Execution run = options.run;
     options.run.progress = {};
@@ -195,7 +192,7 @@ Decimation decimate_to_error(const DecimationInput& in, const FaceBoxes& fine, D
         // The first trials look low: most meshes hold far more faces than an error of interest needs.
         options.faces = static_cast<std::size_t>(std::sqrt(enough * too_few));
         Decimation made = decimate_to_faces(in, fine, options);
-        const double bound = proven_error(in, flat, index, made, options.error, run);
+        const double bound = proven_error(in, index, made, options.error, run);
         const bool stuck = made.stop == DecimationStop::validity;
         if (bound <= options.error) {
             const std::size_t faces = made.faces.size() / 3;
@@ -216,13 +213,12 @@ Decimation decimate_to_error(const DecimationInput& in, const FaceBoxes& fine, D
 Decimation decimate(Points vertices, Triangles faces, const DecimateOptions& options) {
     check(vertices, faces, options);
     const DecimationInput in = decimation_input(vertices, faces, options.run);
-    if (in.faces.empty()) {
-        Decimation nothing;
-        nothing.degenerate = in.degenerate, nothing.non_finite = in.non_finite;
-        return nothing;
-    }
+    Decimation made;
     const FaceBoxes fine = face_boxes(in.positions, in.corners, {options.run.threads, {}});
-    Decimation made = options.error > 0 ? decimate_to_error(in, fine, options) : decimate_to_faces(in, fine, options);
+    if (!in.faces.empty())
+        made = options.error > 0 ? decimate_to_error(in, fine, options) : decimate_to_faces(in, fine, options);
+    made.degenerate = in.degenerate;
+    made.non_finite = in.non_finite;
     Lap watch;
     if (options.measure && !made.faces.empty()) {
         const std::vector<double> flat = boxed(in, made.vertices);

@@ -20,7 +20,7 @@ std::vector<double> distances(const FaceBoxes& fine, Points places, const Execut
     for_blocks(places.count, block, run, [&](std::size_t, std::size_t i, std::size_t end) {
         for (std::int32_t face = -1; i < end; ++i) {
             const Vec3 p = load(places[order[i]]);
-            const FaceHit found = closest_face(fine, p, face < 0 ? FaceHit{} : hit_of(fine, face, p));
+            const FaceHit found = closest_face(fine, p, hit_of(fine, face, p));
             face = found.face;
             distance[order[i]] = std::sqrt(found.squared);
         }
@@ -34,8 +34,7 @@ DecimationError decimation_error(const DecimationInput& in, const FaceBoxes& fin
                                  const Execution& run) {
     const SurfaceSamples back = surface_samples(vertices, faces, samples, 0, run);
     const Deviation from_made = deviation_of(distances(fine, back.points, run), back.counts);
-    const std::vector<double> flat = in.flat();
-    const SurfaceSamples there = surface_samples(flat, in.corners, samples, 0, run);
+    const SurfaceSamples there = surface_samples(in.points(), in.corners, samples, 0, run);
     const Deviation from_input =
         deviation_of(ClosestIndex(vertices, faces, run).distances(there.points, run), there.counts);
     return {std::max(from_made.max, from_input.max), std::max(from_made.rms, from_input.rms)};

@@ -63,13 +63,6 @@ void sort_faces(Triangles faces, const std::vector<std::int32_t>& rank, Decimati
 
 }  // namespace
 
-std::vector<double> DecimationInput::flat() const {
-    std::vector<double> out;
-    out.reserve(3 * positions.size());
-    for (const Vec3 p : positions) out.insert(out.end(), {p.x, p.y, p.z});
-    return out;
-}
-
 DecimationInput decimation_input(Points vertices, Triangles faces, const Execution& run) {
     DecimationInput in;
     in.faces = usable_faces(vertices, faces, in);

@@ -22,7 +22,6 @@ struct DecimationInput {
     double diagonal = 1;
     std::size_t degenerate = 0, non_finite = 0;  ///< faces left out
 
-    std::vector<double> flat() const;  ///< positions, 3 a vertex
     Points points() const { return {positions.empty() ? nullptr : &positions.front().x, positions.size()}; }
 };
 

@@ -87,7 +87,7 @@ std::vector<SurfacePoint> vertex_sources(const DecimationInput& in, const FaceBo
         // The vertices are in an order of space too: the face of one is a good guess for the next.
         for (std::int32_t face = -1; v < end; ++v) {
             const Vec3 p = coarse.position[v];
-            face = closest_face(fine, p, face < 0 ? FaceHit{} : hit_of(fine, face, p)).face;
+            face = closest_face(fine, p, hit_of(fine, face, p)).face;
             out[v] = on_face(in, face, p);
         }
     });

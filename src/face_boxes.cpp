@@ -121,6 +121,7 @@ FaceBoxes face_boxes(const std::vector<Vec3>& positions, const std::vector<std::
 }
 
 FaceHit hit_of(const FaceBoxes& boxes, std::int32_t face, Vec3 q) {
+    if (face < 0) return {};
     const std::int32_t* v = &boxes.corners[3 * face];
     return {closest_on_triangle(q, boxes.positions[v[0]], boxes.positions[v[1]], boxes.positions[v[2]]).squared, face};
 }

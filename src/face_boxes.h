@@ -33,7 +33,7 @@ struct FaceHit {
     std::int32_t face = -1;
 };
 
-/// The squared distance of q from one face.
+/// The squared distance of q from one face; of face −1 infinite.
 FaceHit hit_of(const FaceBoxes& boxes, std::int32_t face, Vec3 q);
 
 /// The face closest to q, or `start` where none is closer; any face within √enough of q will do, if there is one.

@@ -1,5 +1,5 @@
-// Sums of squared distances to planes, each about its vertex. Garland and Heckbert, "Surface Simplification Using
-// Quadric Error Metrics", 1997.
+// Sums of squared distances to planes, each about its vertex, and the point where such a sum is least. Garland and
+// Heckbert, "Surface Simplification Using Quadric Error Metrics", 1997.
 //
 // About the vertex, the planes of the faces at it have no linear and no constant part: six numbers say it all, and
 // nothing cancels, however far from the origin the surface is.

@@ -24,6 +24,15 @@ constexpr std::uint8_t rung_choice(int rung, Family family) {
     return static_cast<std::uint8_t>(first_rung_choice + rung * families + static_cast<int>(family));
 }
 
+/// −1 of choices that are none of a rung.
+constexpr int rung_of(std::uint8_t choice) {
+    return choice < first_rung_choice ? -1 : (choice - first_rung_choice) / families;
+}
+/// Of the choice of a rung.
+constexpr Family family_of(std::uint8_t choice) {
+    return static_cast<Family>((choice - first_rung_choice) % families);
+}
+
 /// Climb, and put into `result` whatever promises a smaller error than what is there.
 /// \param active  elements to begin with; others are left alone.
 /// \param length  as much as lengths are scaled by.

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "face_frame.h"
+#include "local_quadric.h"
 #include "parallel.h"
-#include "quadric.h"
 #include "triangle_closest.h"
 
 namespace gaussmap {
@@ -33,7 +33,6 @@ class Walk {
     void look(std::int32_t f) {
         if (f == face) return;
         const std::int32_t* v = &mesh_.vertex[3 * f];
-        if (v[0] < 0) return;
         const TriangleHit found =
             closest_on_triangle(p_, mesh_.position[v[0]], mesh_.position[v[1]], mesh_.position[v[2]]);
         if (face < 0 || found.squared < hit.squared) hit = found, face = f;
@@ -49,14 +48,11 @@ class Walk {
             look_around(mesh_.vertex[3 * at + (std::max_element(w.begin(), w.end()) - w.begin())]);
         }
     }
-    /// Further from every side of its face than from p, the closest point has no rival that does not fold back over it.
     bool settled() const {
-        if (hit.u <= 0 || hit.v <= 0 || hit.w <= 0) return false;
         const std::int32_t* v = &mesh_.vertex[3 * face];
         const Vec3 a = mesh_.position[v[0]], b = mesh_.position[v[1]], c = mesh_.position[v[2]];
-        const double nn = squared(cross(b - a, c - a));
-        return hit.squared * squared(c - b) < hit.u * hit.u * nn && hit.squared * squared(a - c) < hit.v * hit.v * nn &&
-               hit.squared * squared(b - a) < hit.w * hit.w * nn;
+        return has_no_rival(hit.squared, {hit.u, hit.v, hit.w}, {squared(c - b), squared(a - c), squared(b - a)},
+                            squared(cross(b - a, c - a)));
     }
 
     TriangleHit hit{};
@@ -225,19 +221,41 @@ FaceSamples by_face(const FitSamples& samples, std::size_t faces) {
 
 namespace {
 
+/// What planes ask of a move x: that xᵀ A x − 2 b·x be small.
+struct Planes {
+    Symmetric a;
+    Vec3 b;
+
+    /// The plane through p of the unit normal n.
+    void add(Vec3 n, Vec3 p, double weight) {
+        a.add_normal(n, weight);
+        b = b + weight * dot(n, p) * n;
+    }
+    Planes& operator+=(const Planes& other) {
+        a += other.a, b = b + other.b;
+        return *this;
+    }
+    /// The best move, held to none where the planes leave a direction free.
+    Vec3 move() const {
+        const double held = pull * a.trace();
+        const Vec3 best = held > 0 ? HeldInverse(a, held).times(b) : Vec3{};
+        return finite(best) ? best : Vec3{};
+    }
+};
+
 /// What the samples of a face ask of one of its corners. Single precision will do: it is a step, taken again.
 struct Wish {
-    float xx, xy, xz, yy, yz, zz, x, y, z;  ///< a quadric in the corner's move
+    float xx, xy, xz, yy, yz, zz, x, y, z;  ///< planes, for the corner's move
     float most;                             ///< squared distance of the samples
     float nearest;                          ///< squared distance of the corner from …
     std::int32_t sample;                    ///< … the nearest of them; −1: none
 
-    void take(const Quadric& q) {
+    void take(const Planes& p) {
         const auto single = [](double a) { return static_cast<float>(a); };
-        xx = single(q.xx), xy = single(q.xy), xz = single(q.xz), yy = single(q.yy), yz = single(q.yz);
-        zz = single(q.zz), x = single(q.b.x), y = single(q.b.y), z = single(q.b.z);
+        xx = single(p.a.xx), xy = single(p.a.xy), xz = single(p.a.xz), yy = single(p.a.yy), yz = single(p.a.yz);
+        zz = single(p.a.zz), x = single(p.b.x), y = single(p.b.y), z = single(p.b.z);
     }
-    Quadric planes() const { return {xx, xy, xz, yy, yz, zz, {x, y, z}, 0}; }
+    Planes planes() const { return {{xx, xy, xz, yy, yz, zz}, {x, y, z}}; }
 };
 
 /// The residuals along their own directions, each taken as falling with a corner's weight at the closest point.
@@ -245,7 +263,7 @@ struct Wish {
 /// move at once. \param wish  three, of the corners.
 void ask(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows, std::int32_t f, const FitNorm& norm,
          Wish* wish) {
-    std::array<Quadric, 3> planes;
+    std::array<Planes, 3> planes;
     std::array<double, 3> nearest{HUGE_VAL, HUGE_VAL, HUGE_VAL};
     std::array<std::int32_t, 3> sample{-1, -1, -1};
     const FaceFrame frame = frame_of(mesh, f);
@@ -273,11 +291,10 @@ void ask(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& ro
         const Vec3 r = p - (hit.u * a + hit.v * b + hit.w * c);
         const std::array<double, 3> shares{hit.u, hit.v, hit.w};
         for (std::size_t k = 0; k < 3; ++k)
-            if (shares[k] > 0) planes[k] += plane_quadric(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
+            if (shares[k] > 0) planes[k].add(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
     });
     for (std::size_t k = 0; k < 3; ++k) {
-        if (weights[k] > 0)
-            planes[k] += plane_quadric(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
+        if (weights[k] > 0) planes[k].add(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
         wish[k].take(planes[k]);
         wish[k].most = static_cast<float>(most);
         wish[k].nearest = static_cast<float>(nearest[k]);
@@ -309,7 +326,7 @@ std::int32_t nearest_sample(const RingMesh& mesh, const AreaSamples& samples, co
 /// Where v goes.
 Vec3 wanted_move(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish, std::int32_t v,
                  std::int32_t anchor, const FitNorm& norm) {
-    Quadric sum;
+    Planes sum;
     double ring_area = 0;  // a third of it
     double most = 0, shortest = HUGE_VAL;
     const Vec3 at = mesh.position[v];
@@ -326,9 +343,9 @@ Vec3 wanted_move(const RingMesh& mesh, const AreaSamples& samples, const std::ve
     const Vec3 back = samples.point[anchor] - at;
     most = std::max(most, squared(back));
     const double d = length(back), excess = d - spacing;
-    if (excess > 0) sum += plane_quadric(1 / d * back, excess / d * back, astray * ring_area);
+    if (excess > 0) sum.add(1 / d * back, excess / d * back, astray * ring_area);
     // Weights that grow with the distances to be made small call for shorter steps.
-    Vec3 move = overstep / (norm.power - 1) * minimizer(sum, {}, pull);
+    Vec3 move = overstep / (norm.power - 1) * sum.move();
     // No further than the surface is away, several times over where it is met askew, nor past a neighbour.
     const double bound = std::min(3 * std::sqrt(most), 0.3 * std::sqrt(shortest)), l = length(move);
     if (l > bound) move = bound / l * move;

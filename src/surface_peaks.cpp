@@ -155,7 +155,7 @@ class Peaks {
         for (const Vec3 w : grid_) {
             const Vec3 p = w.x * triangle[0] + w.y * triangle[1] + w.z * triangle[2];
             // Begin where the place before was, or with the nearest centre.
-            if (last.face >= 0) last = hit_of(fine_, last.face, p);
+            last = hit_of(fine_, last.face, p);
             if (last.squared > low_) {
                 Nearest nearest{p};
                 look(near, nearest);
@@ -182,9 +182,7 @@ class Peaks {
             if (apart < nearest.least) nearest.least = apart, nearest.centre = i;
         });
     }
-    FaceHit guess(const Nearest& nearest) const {
-        return nearest.centre < 0 ? FaceHit{} : hit_of(fine_, nearest.centre, nearest.to);
-    }
+    FaceHit guess(const Nearest& nearest) const { return hit_of(fine_, nearest.centre, nearest.to); }
 
     /// The greatest distance around v, were it at p; no more than is needed to see that it is at least `enough`.
     double height_at(std::int32_t v, Vec3 p, double enough) {

@@ -22,14 +22,6 @@ constexpr float missing_of_quadrics = 3, missing_of_quartics = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
 constexpr int near_reach = 12;
 
-int rung_of(std::uint8_t choice) {
-    return choice < first_rung_choice ? -1 : (choice - first_rung_choice) / families;
-}
-
-bool is_quartic(std::uint8_t choice) {
-    return choice >= first_rung_choice && (choice - first_rung_choice) % families == static_cast<int>(Family::quartic);
-}
-
 /// The densities averaged once for as many neighbours in an element's window as said.
 std::vector<float> averaged(const ElementGraph& graph, const Measured& measured, int neighbors, const Execution& run) {
     std::vector<float> smooth(measured.density.begin(), measured.density.end()), out(smooth);
@@ -54,7 +46,7 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
     for (std::size_t i = 0; i < bias.size(); ++i) {
         if (rung_of(measured.choice[i]) < 0) continue;
         const auto density = static_cast<float>(measured.density[i]);
-        bias[i] = is_quartic(measured.choice[i])
+        bias[i] = family_of(measured.choice[i]) == Family::quartic
                       ? missing_of_quartics * std::pow(density - 2 * narrow[i] + wide[i], 2.0F)
                       : missing_of_quadrics * std::pow(density - wide[i], 2.0F);
     }
