@@ -145,7 +145,7 @@ bench-decimate: setup
 
 bench-python: release python-wheel
 	@cmake --preset bench >/dev/null
-	@cmake --build --preset bench --target bench_python_call
+	@cmake --build --preset bench --target bench_python_call gaussmap_cli
 	/usr/bin/python3 bench/python.py build/bench build/python/dist
 
 bench-real: packages = packages.txt bench/packages.txt
