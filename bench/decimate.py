@@ -93,7 +93,7 @@ class Bench:
 
     def peers(self, mesh, targets):
         """Rows peer, version, parameters, asked, made, seconds, path of every peer on the mesh."""
-        kept = self.folder / f"{mesh.stem}.tsv"
+        kept = self.folder / f"{mesh.stem}_{'_'.join(map(str, targets))}.tsv"
         if not kept.exists():
             prefix = self.folder / f"{mesh.stem}_"
             kept.write_text("".join(run([*command, mesh, prefix, *targets], folder)
