@@ -1,20 +1,19 @@
 #include "collapse_passes.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <utility>
 
+#include "collapse_lanes.h"
 #include "local_quadric.h"
 #include "parallel.h"
+#include "scatter.h"
 
 namespace gaussmap {
 namespace {
 
-/// How firmly the best position is held to the middle of the edge, where the quadric is flat.
-constexpr double pull = 1e-5;
-/// What an edge of length l costs on a plane, as a squared distance over l²: short edges go first there.
-constexpr double flat_cost = 1e-9;
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::size_t grain = 1 << 13;
 
@@ -35,12 +34,13 @@ class Passes {
 
     std::vector<std::int32_t> run() {
         const std::size_t start = mesh_.face_count(), target = options_.faces;
-        if (start > target) find_shapes();
+        if (start > target && !shape_.empty()) find_first_shapes();
         double boost = 1;  // where what is cheap is not valid
         while (mesh_.face_count() > target) {
             const std::size_t faces = mesh_.face_count();
-            // Memory is walked in order: worth a copy as soon as a third of it is gone.
-            if (3 * faces < 2 * mesh_.tags.size()) close_gaps();
+            // Memory is walked in order: worth a copy as soon as half of it is gone.
+            if (2 * faces < mesh_.tags.size()) close_gaps();
+            if (faces < start && options_.cost == CollapseCost::present) find_shapes();
             find_keys();
             if (keys_.empty()) break;
             const auto wanted = static_cast<std::size_t>(boost * static_cast<double>(share(faces)));
@@ -62,11 +62,6 @@ class Passes {
         stale,    ///< something around has changed since the key was made
         checked,  ///< the partner is the best of those with which the collapse was valid
         joined    ///< in this pass
-    };
-    /// What is left of a quadric beside its shape: − 2 b·x + c, x from the vertex.
-    struct Rest {
-        Vec3 b;
-        double c = 0;
     };
     /// xᵀ A x − 2 g·x + c, x from the middle of an edge.
     struct EdgeQuadric {
@@ -93,49 +88,62 @@ class Passes {
         return keys_[rank];
     }
 
+    /// Call body(v, room) for the vertices that something has changed around.
     template <class Body>
     void for_stale(Body&& body) {
         for_blocks(state_.size(), grain, {options_.run.threads, {}},
                    [&](std::size_t, std::size_t begin, std::size_t end) {
+                       RingMesh::Sectors room;
                        for (std::size_t v = begin; v < end; ++v)
-                           if (state_[v] == stale || state_[v] == joined) body(static_cast<std::int32_t>(v));
+                           if (state_[v] == stale || state_[v] == joined) body(static_cast<std::int32_t>(v), room);
                    });
     }
 
+    /// Of all vertices: each face is looked at once.
+    void find_first_shapes() {
+        const std::size_t n = shape_.size();
+        const Triangles faces(mesh_.vertex.data(), mesh_.tags.size());
+        const Execution run{options_.run.threads, {}};
+        scatter_batches<6>(faces, n, chunk_faces(faces, n, run), run, &shape_[0].xx,
+                           [&](std::size_t begin, std::size_t end, auto* corners) {
+                               lanes_.face_planes(mesh_.position.data(), faces[begin], end - begin, corners[0][0]);
+                           });
+        for_stale([&](std::int32_t v, auto& sectors) {
+            if (mesh_.kind[v] != VertexKind::free) mesh_.gather(v, sectors), add_sides(shape_[v], v, sectors);
+            shape_[v] *= weight_[v];
+        });
+    }
+
+    /// Of those that something has changed around.
     void find_shapes() {
-        if (!shape_.empty()) for_stale([&](std::int32_t v) { shape_[v] = shape_of(v); });
+        for_stale([&](std::int32_t v, auto& sectors) {
+            mesh_.gather(v, sectors);
+            shape_[v] = lanes_.planes(mesh_.position.data(), sectors.begin(), sectors.size(), mesh_.position[v]);
+            if (mesh_.kind[v] != VertexKind::free) add_sides(shape_[v], v, sectors);
+            shape_[v] *= weight_[v];
+        });
     }
 
     void find_keys() {
-        if (options_.cost == CollapseCost::present) find_shapes();
-        for_stale([&](std::int32_t v) { choose(v); });
+        for_stale([&](std::int32_t v, auto&) { choose(v); });
         keys_.clear();
         std::copy_if(key_.begin(), key_.end(), std::back_inserter(keys_), [](float key) { return key < never; });
     }
 
-    /// Planes of the faces around v, and planes on the tagged sides that end in it, upright on their faces.
-    Symmetric shape_of(std::int32_t v) const {
-        Symmetric sum;
+    /// Planes on the tagged sides that end in v, upright on their faces. Weight |side|², as for the area of the surface
+    /// that it ends.
+    void add_sides(Symmetric& sum, std::int32_t v, const RingMesh::Sectors& sectors) const {
         const Vec3 p = mesh_.position[v];
-        mesh_.for_corners(v, [&](std::int32_t c) {
-            const std::int32_t n = RingMesh::after(c), q = RingMesh::before(c);
-            const Vec3 s = mesh_.position[mesh_.vertex[n]] - p, t = mesh_.position[mesh_.vertex[q]] - p;
-            const Vec3 normal = cross(s, t);
-            const double twice_area = length(normal);
-            if (twice_area > 0) sum.add_normal(normal, 0.5 / twice_area);
-            if (mesh_.kind[v] == VertexKind::free) return;
-            if (mesh_.tagged(q)) add_side(sum, s, normal);
-            if (mesh_.tagged(n)) add_side(sum, t, normal);
-        });
-        sum *= weight_[v];
-        return sum;
-    }
-
-    /// A side of a face of that normal: weight |side|², as for the area of the surface that it ends.
-    void add_side(Symmetric& sum, Vec3 side, Vec3 normal) const {
-        const Vec3 upright = cross(normal, side);
-        const double l = squared(upright);
-        if (l > 0) sum.add_normal(upright, options_.border_weight * squared(side) / l);
+        for (const RingMesh::Sector& sector : sectors) {
+            const Vec3 s = mesh_.position[sector.from] - p, t = mesh_.position[sector.to] - p, normal = cross(s, t);
+            const auto add = [&](Vec3 side) {
+                const Vec3 upright = cross(normal, side);
+                const double l = squared(upright);
+                if (l > 0) sum.add_normal(upright, options_.border_weight * squared(side) / l);
+            };
+            if (mesh_.tagged(RingMesh::before(sector.corner))) add(s);
+            if (mesh_.tagged(RingMesh::after(sector.corner))) add(t);
+        }
     }
 
     /// \param half  of the edge, from a to its middle.
@@ -151,14 +159,19 @@ class Passes {
 
     double cost(std::int32_t a, std::int32_t b) const {
         const VertexKind ka = mesh_.kind[a], kb = mesh_.kind[b];
-        if (ka == VertexKind::corner && kb == VertexKind::corner) return never;
+        double cost = never;
+        if (ka == VertexKind::corner && kb == VertexKind::corner) return cost;
         const Vec3 half = 0.5 * (mesh_.position[b] - mesh_.position[a]);
         if (options_.cost == CollapseCost::length) return (weight_[a] + weight_[b]) * length(half);
+        if (ka == kb) {
+            lanes_.costs(quadrics(), a, &b, 1, &cost);
+            return cost;
+        }
         const EdgeQuadric sum = sum_of(a, b, half);
-        const double flat = 4 * flat_cost * sum.a.trace() * squared(half), held = pull * sum.a.trace();
-        if (ka != kb) return flat + sum.at(ka > kb ? -half : half);
-        if (!(held > 0)) return flat;
-        return flat + std::max(0.0, sum.c - HeldInverse(sum.a, held).energy(sum.g));
+        return 4 * flat_cost * sum.a.trace() * squared(half) + sum.at(ka > kb ? -half : half);
+    }
+    VertexQuadrics quadrics() const {
+        return {mesh_.position.data(), shape_.data(), rest_.empty() ? nullptr : rest_.data()};
     }
 
     /// Where a and b join.
@@ -168,7 +181,7 @@ class Passes {
         if (ka != kb) return ka > kb ? pa : pb;
         if (options_.cost == CollapseCost::length) return middle;
         const EdgeQuadric sum = sum_of(a, b, 0.5 * (pb - pa));
-        const double held = pull * sum.a.trace();
+        const double held = collapse_pull * sum.a.trace();
         const Vec3 p = held > 0 ? middle + HeldInverse(sum.a, held).times(sum.g) : middle;
         return finite(p) ? p : middle;
     }
@@ -177,16 +190,32 @@ class Passes {
     void choose(std::int32_t v) {
         double least = never;
         std::int32_t partner = -1;
-        const auto offer = [&](std::int32_t w) {
-            if (w < v) return;
-            const double at = cost(v, w);
+        const auto take = [&](std::int32_t w, double at) {
             if (at < least || (at == least && w < partner)) least = at, partner = w;
+        };
+        std::array<std::int32_t, 16> alike;  // of the kind of v: several at a time
+        std::array<double, 16> costs;
+        std::size_t count = 0;
+        const auto take_alike = [&] {
+            lanes_.costs(quadrics(), v, alike.data(), count, costs.data());
+            for (std::size_t i = 0; i < count; ++i) take(alike[i], costs[i]);
+            count = 0;
+        };
+        const VertexKind kind = mesh_.kind[v];
+        const bool one_by_one = options_.cost == CollapseCost::length || kind == VertexKind::corner;
+        const auto offer = [&](std::int32_t w) {
+            const bool is_alike = !one_by_one && mesh_.kind[w] == kind;
+            if (!is_alike && w > v) take(w, cost(v, w));
+            alike[count] = w;
+            count += is_alike & (w > v);  // no branch: half of them are
+            if (count == alike.size()) take_alike();
         };
         mesh_.for_corners(v, [&](std::int32_t c) {
             // On a closed fan every neighbour comes after v in one face.
             offer(mesh_.vertex[RingMesh::after(c)]);
-            if (mesh_.kind[v] != VertexKind::free) offer(mesh_.vertex[RingMesh::before(c)]);
+            if (kind != VertexKind::free) offer(mesh_.vertex[RingMesh::before(c)]);
         });
+        if (count > 0) take_alike();
         key_[v] = static_cast<float>(least), partner_[v] = partner;
         state_[v] = fresh;
     }
@@ -209,7 +238,8 @@ class Passes {
     }
 
     bool valid(std::int32_t a, std::int32_t b, Vec3 p) {
-        return mesh_.refusal(a, b, options_.allow_topology) == Refusal::none && !mesh_.folds(a, b, p);
+        mesh_.look(a, b, edge_);
+        return mesh_.refusal(edge_, options_.allow_topology) == Refusal::none && !mesh_.folds(edge_, p);
     }
 
     /// The cheapest partner with which the collapse is valid.
@@ -227,7 +257,7 @@ class Passes {
         state_[v] = checked;
     }
 
-    /// b, of the higher number, joins a.
+    /// b, of the higher number, joins a, as was found valid.
     void join(std::int32_t a, std::int32_t b, Vec3 p) {
         const double ta = shape_.empty() ? 1 : shape_[a].trace(), tb = shape_.empty() ? 1 : shape_[b].trace();
         if (ta + tb > 0) weight_[a] = static_cast<float>((ta * weight_[a] + tb * weight_[b]) / (ta + tb));
@@ -237,7 +267,7 @@ class Passes {
             rest_[a] = {sum.g - sum.a.times(x), sum.at(x)};
         }
         if (!shape_.empty()) shape_[a] += shape_[b];
-        mesh_.collapse(a, b, p);
+        mesh_.collapse(edge_, p);
         parent_[b] = a;
         key_[b] = static_cast<float>(never), state_[b] = fresh;
         mesh_.for_corners(a, [&](std::int32_t c) {
@@ -276,16 +306,18 @@ class Passes {
 
     RingMesh& mesh_;
     const CollapseOptions& options_;
+    const CollapseLanes& lanes_ = collapse_lanes();
     std::vector<float> weight_;
-    std::vector<Symmetric> shape_;  ///< quadrics about their vertices; none where costs are lengths
-    std::vector<Rest> rest_;        ///< where quadrics are inherited
-    std::vector<float> key_;        ///< what joining the partner costs
+    std::vector<Symmetric> shape_;   ///< quadrics about their vertices; none where costs are lengths
+    std::vector<QuadricRest> rest_;  ///< where quadrics are inherited
+    std::vector<float> key_;         ///< what joining the partner costs
     std::vector<std::int32_t> partner_;
     std::vector<State> state_;
     std::vector<std::int32_t> parent_;  ///< the vertex that each joined since gaps were last closed
     std::vector<std::int32_t> joined_;  ///< the vertex, as numbered then, that each of the first ones had joined
     std::vector<float> keys_;           ///< room for those that are finite
     std::vector<std::pair<double, std::int32_t>> offers_;
+    RingMesh::Edge edge_;  ///< last looked at
 };
 
 }  // namespace

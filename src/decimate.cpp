@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -103,12 +104,14 @@ std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, co
 
 /// The sides that are left, counted by why they cannot collapse.
 void count_refusals(RingMesh& mesh, bool allow_topology, Decimation& out) {
+    RingMesh::Edge edge;
     for (std::size_t c = 0; c < mesh.vertex.size(); ++c) {
         const auto corner = static_cast<std::int32_t>(c);
         if (mesh.vertex[c] < 0) continue;
         const std::int32_t a = mesh.vertex[RingMesh::after(corner)], b = mesh.vertex[RingMesh::before(corner)];
         if (mesh.twin(corner) > corner) continue;  // met from the other face
-        switch (mesh.refusal(a, b, allow_topology)) {
+        mesh.look(a, b, edge);
+        switch (mesh.refusal(edge, allow_topology)) {
             case Refusal::locked:
                 ++out.refused_locked;
                 break;
@@ -121,7 +124,13 @@ void count_refusals(RingMesh& mesh, bool allow_topology, Decimation& out) {
     }
 }
 
-Decimation decimate_to_faces(const DecimationInput& in, const FaceBoxes& fine, const DecimateOptions& options) {
+bool is_fitted(const DecimateOptions& options) {
+    return options.method == DecimationMethod::best && !options.fast;
+}
+
+/// \param fine  boxes of the input's faces, where the result is fitted to them.
+Decimation decimate_to_faces(const DecimationInput& in, const std::optional<FaceBoxes>& fine,
+                             const DecimateOptions& options) {
     Decimation out;
     Lap watch;
     RingMesh coarse = tagged_mesh(in, options);
@@ -132,18 +141,18 @@ Decimation decimate_to_faces(const DecimationInput& in, const FaceBoxes& fine, c
     }
     watch.add_to(out.seconds_collapse);
     const bool unchanged = coarse.face_count() == in.faces.size();
-    const bool fitted = options.method == DecimationMethod::best && !options.fast && !unchanged;
-    if (fitted) bring_nearer(coarse, in, fine, joined, options.objective, part_of(options.run, 0.5, 0.95));
+    const bool fitted = is_fitted(options) && !unchanged;
+    if (fitted) bring_nearer(coarse, in, *fine, joined, options.objective, part_of(options.run, 0.5, 0.95));
     watch.add_to(out.seconds_fit);
 
-    for (const Vec3 q : coarse.position) {
-        const Vec3 p = in.centre + in.diagonal * q;
-        out.vertices.insert(out.vertices.end(), {p.x, p.y, p.z});
-    }
+    out.vertices.resize(3 * coarse.position.size());
+    for (std::size_t v = 0; v < coarse.position.size(); ++v)
+        store(&out.vertices[3 * v], in.centre + in.diagonal * coarse.position[v]);
+    out.face_source.reserve(coarse.origin.size());
     for (const std::int32_t origin : coarse.origin) out.face_source.push_back(in.faces[origin]);
     if (options.sources) {
         out.vertex_source =
-            fitted ? vertex_sources(in, fine, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
+            fitted ? vertex_sources(in, *fine, coarse, {options.run.threads, {}}) : joined_sources(in, coarse, joined);
         if (!options.seams.empty()) {
             RingMesh seamed(in.positions, in.corners);
             tag_seams(seamed, in, options.seams);
@@ -180,7 +189,7 @@ double proven_error(const DecimationInput& in, const ClosestIndex& index, const 
 
 /// Bisection of the number of faces, by ratios: the distance falls with it, if not strictly, and what is given back was
 /// proven.
-Decimation decimate_to_error(const DecimationInput& in, const FaceBoxes& fine, DecimateOptions options) {
+Decimation decimate_to_error(const DecimationInput& in, const std::optional<FaceBoxes>& fine, DecimateOptions options) {
     const ClosestIndex index(in.points(), in.corners, {options.run.threads, {}});
     options.faces = in.faces.size();
     const Execution run = options.run;
@@ -214,15 +223,18 @@ Decimation decimate(Points vertices, Triangles faces, const DecimateOptions& opt
     check(vertices, faces, options);
     const DecimationInput in = decimation_input(vertices, faces, options.run);
     Decimation made;
-    const FaceBoxes fine = face_boxes(in.positions, in.corners, {options.run.threads, {}});
+    std::optional<FaceBoxes> fine;
+    const auto make_boxes = [&] { fine.emplace(face_boxes(in.positions, in.corners, {options.run.threads, {}})); };
+    if (is_fitted(options)) make_boxes();
     if (!in.faces.empty())
         made = options.error > 0 ? decimate_to_error(in, fine, options) : decimate_to_faces(in, fine, options);
     made.degenerate = in.degenerate;
     made.non_finite = in.non_finite;
     Lap watch;
     if (options.measure && !made.faces.empty()) {
+        if (!fine) make_boxes();
         const std::vector<double> flat = boxed(in, made.vertices);
-        const DecimationError error = decimation_error(in, fine, flat, made.faces, {options.run.threads, {}});
+        const DecimationError error = decimation_error(in, *fine, flat, made.faces, {options.run.threads, {}});
         made.max_error = error.max, made.rms_error = error.rms;
     }
     watch.add_to(made.seconds_measure);

@@ -1,6 +1,7 @@
 #include "decimation_input.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
 #include <tuple>
@@ -11,18 +12,33 @@
 namespace gaussmap {
 namespace {
 
-std::vector<std::int32_t> usable_faces(Points vertices, Triangles faces, DecimationInput& in) {
+/// What is known of a vertex, in bits.
+constexpr std::uint8_t is_finite = 1, is_used = 2;
+
+/// Finds the usable faces, and marks their vertices.
+std::vector<std::int32_t> usable_faces(Triangles faces, std::vector<std::uint8_t>& known, DecimationInput& in) {
     std::vector<std::int32_t> usable;
+    usable.reserve(faces.count);
     for (std::size_t f = 0; f < faces.count; ++f) {
         const std::int32_t *abc = faces[f], a = abc[0], b = abc[1], c = abc[2];
-        if (a == b || b == c || c == a)
+        if (a == b || b == c || c == a) {
             ++in.degenerate;
-        else if (!finite(load(vertices[a])) || !finite(load(vertices[b])) || !finite(load(vertices[c])))
+        } else if ((known[a] & known[b] & known[c] & is_finite) == 0) {
             ++in.non_finite;
-        else
+        } else {
             usable.push_back(static_cast<std::int32_t>(f));
+            known[a] |= is_used, known[b] |= is_used, known[c] |= is_used;
+        }
     }
     return usable;
+}
+
+std::vector<std::int32_t> order_of(Points vertices, const std::vector<std::int32_t>& used, const Execution& run) {
+    if (used.size() == vertices.count) return spatial_order(vertices, {run.threads, {}});
+    std::vector<double> points;
+    points.reserve(3 * used.size());
+    for (const std::int32_t v : used) points.insert(points.end(), vertices[v], vertices[v] + 3);
+    return spatial_order(points, {run.threads, {}});
 }
 
 /// Faces by the least of their vertices, which comes first, then by the others, then by their index.
@@ -34,29 +50,33 @@ void sort_faces(Triangles faces, const std::vector<std::int32_t>& rank, Decimati
             return std::tie(second, third, face) < std::tie(other.second, other.third, other.face);
         }
     };
-    const auto least_corner = [&](std::int32_t f) {
-        const std::int32_t a = rank[faces[f][0]], b = rank[faces[f][1]], c = rank[faces[f][2]];
-        return a < b && a < c ? 0 : b < c ? 1 : 2;
-    };
+    const std::size_t count = in.faces.size();
+    in.corners.resize(3 * count);
+    in.rotation.resize(count);
     // A bucket for each least vertex, then the few faces in each.
-    std::vector<std::size_t> begin(in.positions.size() + 1, 0);
-    for (const std::int32_t f : in.faces) ++begin[static_cast<std::size_t>(rank[faces[f][least_corner(f)]]) + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<Key> keys(in.faces.size());
-    std::vector<std::size_t> end(begin.begin(), begin.end() - 1);
-    for (const std::int32_t f : in.faces) {
-        const int k = least_corner(f);
-        keys[end[static_cast<std::size_t>(rank[faces[f][k]])]++] = {
-            rank[faces[f][(k + 1) % 3]], rank[faces[f][(k + 2) % 3]], f, static_cast<std::int8_t>(k)};
+    std::vector<std::int32_t> end(in.positions.size() + 1, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t* abc = faces[in.faces[i]];
+        const std::array<std::int32_t, 3> ranks{rank[abc[0]], rank[abc[1]], rank[abc[2]]};
+        const int k = static_cast<int>(std::min_element(ranks.begin(), ranks.end()) - ranks.begin());
+        for (int j = 0; j < 3; ++j) in.corners[3 * i + j] = ranks[(k + j) % 3];
+        in.rotation[i] = static_cast<std::int8_t>(k);
+        ++end[ranks[k] + 1];
     }
-    in.corners.reserve(3 * keys.size());
-    in.rotation.reserve(keys.size());
-    for (std::size_t v = 0; v < end.size(); ++v) {
-        std::sort(&keys[0] + begin[v], &keys[0] + end[v]);
-        for (std::size_t i = begin[v]; i < end[v]; ++i) {
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Key> keys(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::int32_t* corner = &in.corners[3 * i];
+        keys[end[corner[0]]++] = {corner[1], corner[2], in.faces[i], in.rotation[i]};
+    }
+    std::int32_t i = 0;
+    for (std::size_t v = 0; v + 1 < end.size(); ++v) {
+        if (end[v] - i > 1) std::sort(&keys[i], &keys[0] + end[v]);
+        for (; i < end[v]; ++i) {
             in.faces[i] = keys[i].face;
-            in.rotation.push_back(keys[i].rotation);
-            in.corners.insert(in.corners.end(), {static_cast<std::int32_t>(v), keys[i].second, keys[i].third});
+            in.rotation[i] = keys[i].rotation;
+            in.corners[3 * i] = static_cast<std::int32_t>(v);
+            in.corners[3 * i + 1] = keys[i].second, in.corners[3 * i + 2] = keys[i].third;
         }
     }
 }
@@ -65,31 +85,32 @@ void sort_faces(Triangles faces, const std::vector<std::int32_t>& rank, Decimati
 
 DecimationInput decimation_input(Points vertices, Triangles faces, const Execution& run) {
     DecimationInput in;
-    in.faces = usable_faces(vertices, faces, in);
+    std::vector<std::uint8_t> known(vertices.count);
+    for (std::size_t v = 0; v < known.size(); ++v) known[v] = finite(load(vertices[v])) ? is_finite : 0;
+    in.faces = usable_faces(faces, known, in);
     if (in.faces.empty()) return in;
-    std::vector<std::int32_t> rank(vertices.count, -1), used;
-    for (const std::int32_t f : in.faces)
-        for (int k = 0; k < 3; ++k) rank[faces[f][k]] = 0;
-    std::vector<double> points;
-    for (std::size_t v = 0; v < vertices.count; ++v) {
-        if (rank[v] < 0) continue;
-        used.push_back(static_cast<std::int32_t>(v));
-        points.insert(points.end(), vertices[v], vertices[v] + 3);
-    }
-    std::vector<std::int32_t> order = spatial_order(points, {run.threads, {}});
+    std::vector<std::int32_t> used;
+    used.reserve(vertices.count);
     BoundingBox box;
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::int32_t v = used[order[i]];
+    for (std::size_t v = 0; v < known.size(); ++v) {
+        if ((known[v] & is_used) == 0) continue;
+        used.push_back(static_cast<std::int32_t>(v));
         box.include(load(vertices[v]));
-        order[i] = v;
-        rank[v] = static_cast<std::int32_t>(i);
     }
     // Halves first: a box as large as doubles reach has a centre, and a diagonal.
     in.centre = 0.5 * box.low + 0.5 * box.high;
     const Vec3 half = 0.5 * box.high - 0.5 * box.low;
     const double largest = std::max({half.x, half.y, half.z});
     in.diagonal = largest > 0 ? 2 * largest * length(1 / largest * half) : 1;
-    for (const std::int32_t v : order) in.positions.push_back(1 / in.diagonal * (load(vertices[v]) - in.centre));
+
+    const std::vector<std::int32_t> order = order_of(vertices, used, run);
+    std::vector<std::int32_t> rank(vertices.count);
+    in.positions.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const std::int32_t v = used[order[i]];
+        in.positions[i] = 1 / in.diagonal * (load(vertices[v]) - in.centre);
+        rank[v] = static_cast<std::int32_t>(i);
+    }
     sort_faces(faces, rank, in);
     return in;
 }

@@ -4,11 +4,10 @@
 #include <numeric>
 #include <utility>
 
+#include "collapse_lanes.h"
+
 namespace gaussmap {
 namespace {
-
-constexpr double least_cosine = 0.25;  ///< between a face's normals before and after a step
-constexpr double sliver = 2e-3;        ///< 2 area / Σ edge² below which a face is one; 0.289 is equilateral
 
 /// Whether a triangle of sides e, f from one corner, which become e2, f2, turns over or becomes a sliver.
 inline bool spoils(Vec3 e, Vec3 f, Vec3 e2, Vec3 f2) {
@@ -82,9 +81,23 @@ void RingMesh::unlink(std::int32_t corner) {
     if (first[v] == corner) first[v] = previous;
 }
 
-void RingMesh::gather(std::int32_t v) {
-    sectors_.clear();
-    for_corners(v, [&](std::int32_t c) { sectors_.push_back({c, vertex[after(c)], vertex[before(c)]}); });
+void RingMesh::gather(std::int32_t v, Sectors& sectors) const {
+    sectors.clear();
+    for_corners(v, [&](std::int32_t c) { sectors.add({c, vertex[after(c)], vertex[before(c)]}); });
+}
+
+void RingMesh::look(std::int32_t a, std::int32_t b, Edge& edge) const {
+    edge.a = a, edge.b = b;
+    edge.of_a.clear(), edge.of_b.clear(), edge.shared.clear();
+    for_corners(a, [&](std::int32_t c) {
+        const Sector s{c, vertex[after(c)], vertex[before(c)]};
+        const bool both = (s.from == b) | (s.to == b);
+        edge.of_a.add(s, !both), edge.shared.add(s, both);
+    });
+    for_corners(b, [&](std::int32_t c) {
+        const Sector s{c, vertex[after(c)], vertex[before(c)]};
+        edge.of_b.add(s, (s.from != a) & (s.to != a));
+    });
 }
 
 bool RingMesh::closed_fan(std::int32_t v, std::vector<std::int32_t>& follower) {
@@ -113,7 +126,7 @@ void RingMesh::tag_irregular_sides() {
         const bool plain = closed_fan(static_cast<std::int32_t>(v), follower);
         kind[v] = plain ? VertexKind::free : VertexKind::corner;
         if (plain) continue;
-        gather(static_cast<std::int32_t>(v));
+        gather(static_cast<std::int32_t>(v), sectors_);
         for (const Sector& here : sectors_) {
             for (const std::int32_t w : {here.from, here.to}) {
                 // The side from v to w belongs to faces (v, w, ·), where it runs out, and (·, w, v), where it runs in.
@@ -143,13 +156,14 @@ void RingMesh::tag_features(double cosine) {
 bool RingMesh::all_in_one_fan() const {
     // Every side is regular: each sector has one before it and one after it.
     std::size_t walked = 0;
-    std::int32_t at = sectors_.front().from;
+    const std::int32_t start = sectors_.begin()->from;
+    std::int32_t at = start;
     do {
         const auto sector =
             std::find_if(sectors_.begin(), sectors_.end(), [&](const Sector& s) { return s.from == at; });
         at = sector->to;
         ++walked;
-    } while (at != sectors_.front().from);
+    } while (at != start);
     return walked == sectors_.size();
 }
 
@@ -161,9 +175,9 @@ std::size_t RingMesh::parts() const {
         return i;
     };
     for (std::size_t i = 0; i < part.size(); ++i) {
-        if (tagged(after(sectors_[i].corner))) continue;
+        if (tagged(after(sectors_.begin()[i].corner))) continue;
         for (std::size_t j = 0; j < part.size(); ++j)
-            if (sectors_[j].from == sectors_[i].to) part[root(j)] = root(i);
+            if (sectors_.begin()[j].from == sectors_.begin()[i].to) part[root(j)] = root(i);
     }
     std::size_t count = 0;
     for (std::size_t i = 0; i < part.size(); ++i) count += part[i] == i;
@@ -171,7 +185,7 @@ std::size_t RingMesh::parts() const {
 }
 
 VertexKind RingMesh::kind_of(std::int32_t v) {
-    gather(v);
+    gather(v, sectors_);
     std::size_t tagged_sides = 0, ends = 0;
     const std::uint32_t mark = new_marks(1);
     for (const Sector& s : sectors_)
@@ -180,7 +194,7 @@ VertexKind RingMesh::kind_of(std::int32_t v) {
             ++ends;
             if (mark_[end] != mark) mark_[end] = mark, ++tagged_sides;
         }
-    if (tagged_sides == 0) return sectors_.empty() || all_in_one_fan() ? VertexKind::free : VertexKind::corner;
+    if (tagged_sides == 0) return sectors_.size() == 0 || all_in_one_fan() ? VertexKind::free : VertexKind::corner;
     // Each part between tagged sides has two ends; a part more is a fan that touches the others in v alone.
     return tagged_sides == 2 && 2 * parts() == ends ? VertexKind::curve : VertexKind::corner;
 }
@@ -215,117 +229,107 @@ std::vector<std::int32_t> RingMesh::close_gaps() {
     return renamed;
 }
 
-/// Both have closed fans of untagged sides: every neighbour is met once, and the side has two faces.
-Refusal RingMesh::free_refusal(std::int32_t a, std::int32_t b) {
+/// Both have closed fans of untagged sides: every neighbour is met once, and the side has two faces. Of the two third
+/// vertices each is met from one of the ends alone.
+Refusal RingMesh::free_refusal(const Edge& edge) {
     const std::uint32_t mark = new_marks(1);
-    int common = 0, degree_a = 0, degree_b = 0;
-    for_corners(a, [&](std::int32_t c) { mark_[vertex[after(c)]] = mark, ++degree_a; });
-    for_corners(b, [&](std::int32_t c) { common += mark_[vertex[after(c)]] == mark, ++degree_b; });
-    const bool tetrahedron = degree_a == 3 && degree_b == 3;
-    return common == 2 && !tetrahedron ? Refusal::none : Refusal::topology;
+    bool common = false;
+    for (const Sector& s : edge.of_a) mark_[s.from] = mark;
+    for (const Sector& s : edge.of_b) common |= mark_[s.from] == mark;
+    const bool tetrahedron = edge.of_a.size() <= 1 && edge.of_b.size() <= 1;
+    return common || tetrahedron ? Refusal::topology : Refusal::none;
 }
 
-Refusal RingMesh::refusal(std::int32_t a, std::int32_t b, bool allow_topology) {
-    const VertexKind ka = kind[a], kb = kind[b];
+Refusal RingMesh::refusal(const Edge& edge, bool allow_topology) {
+    const VertexKind ka = kind[edge.a], kb = kind[edge.b];
     if (ka == VertexKind::corner && kb == VertexKind::corner) return Refusal::locked;
-    if (ka == VertexKind::free && kb == VertexKind::free && !allow_topology) return free_refusal(a, b);
+    if (ka == VertexKind::free && kb == VertexKind::free && !allow_topology) return free_refusal(edge);
     const std::uint32_t mark = new_marks(3);  // + 0: joined to a, + 1: to both, + 2: by a face on both
-    for_corners(a, [&](std::int32_t c) { mark_[vertex[after(c)]] = mark_[vertex[before(c)]] = mark; });
+    for (const auto* sectors : {&edge.of_a, &edge.shared})
+        for (const Sector& s : *sectors) mark_[s.from] = mark_[s.to] = mark;
     std::size_t common = 0, opposite = 0;
     bool along = false, last = false;
-    for_corners(b, [&](std::int32_t c) {
-        for (const std::int32_t k : {after(c), before(c)})
-            if (vertex[k] != a && mark_[vertex[k]] == mark) mark_[vertex[k]] = mark + 1, ++common;
-    });
-    for_corners(b, [&](std::int32_t c) {
-        const std::int32_t n = after(c), p = before(c);
-        if (vertex[n] != a && vertex[p] != a) return;
-        const std::int32_t of_a = vertex[n] == a ? n : p, third = of_a == n ? p : n;
+    const auto count_common = [&](std::int32_t w) {
+        if (mark_[w] == mark) mark_[w] = mark + 1, ++common;
+    };
+    for (const Sector& s : edge.of_b) count_common(s.from), count_common(s.to);
+    for (const Sector& s : edge.shared) count_common(s.from == edge.b ? s.to : s.from);
+    for (const Sector& s : edge.shared) {
+        const std::int32_t n = after(s.corner), p = before(s.corner);
+        const std::int32_t of_b = s.from == edge.b ? n : p, third = of_b == n ? p : n;
         along |= tagged(third);
         // The third vertex keeps a face, and two borders never become one.
-        last |= next(third) == third || (tagged(of_a) && tagged(c));
+        last |= next(third) == third || (tagged(s.corner) && tagged(of_b));
         if (mark_[vertex[third]] == mark + 1) mark_[vertex[third]] = mark + 2, ++opposite;
-    });
+    }
     if (ka != VertexKind::free && kb != VertexKind::free && !along) return Refusal::locked;
     if (last) return Refusal::topology;
-    bool fits = true;
     if (common != opposite) {
         if (!allow_topology) return Refusal::topology;
         // A hole or a slit may close: there, both sides to the common neighbour are borders.
-        const auto faces_with = [&](std::int32_t v, std::int32_t w) {
-            int n = 0;
-            for_corners(v, [&](std::int32_t c) { n += vertex[after(c)] == w || vertex[before(c)] == w; });
-            return n;
+        const auto once = [](const Sectors& sectors, std::int32_t w) {
+            return std::count_if(sectors.begin(), sectors.end(),
+                                 [&](const Sector& s) { return s.from == w || s.to == w; }) == 1;
         };
-        for_corners(b, [&](std::int32_t c) {
-            for (const std::int32_t w : {vertex[after(c)], vertex[before(c)]})
-                if (w != a && mark_[w] == mark + 1 && (faces_with(a, w) != 1 || faces_with(b, w) != 1)) fits = false;
-        });
+        for (const Sector& s : edge.of_b)
+            for (const std::int32_t w : {s.from, s.to})
+                if (mark_[w] == mark + 1 && !(once(edge.of_a, w) && once(edge.of_b, w))) return Refusal::topology;
     }
     // No face may fall upon another, as those of a tetrahedron would.
-    for_corners(b, [&](std::int32_t c) {
-        const std::int32_t u = vertex[after(c)], w = vertex[before(c)];
-        if (u == a || w == a || mark_[u] <= mark || mark_[w] <= mark || mark_[u] > mark + 2 || mark_[w] > mark + 2)
-            return;
-        for_corners(a, [&](std::int32_t d) {
-            const std::int32_t s = vertex[after(d)], t = vertex[before(d)];
-            if ((s == u && t == w) || (s == w && t == u)) fits = false;
-        });
-    });
-    return fits ? Refusal::none : Refusal::topology;
+    const auto of_both = [&](std::int32_t w) { return mark_[w] > mark && mark_[w] <= mark + 2; };
+    for (const Sector& s : edge.of_b) {
+        if (!of_both(s.from) || !of_both(s.to)) continue;
+        for (const Sector& t : edge.of_a)
+            if ((t.from == s.from && t.to == s.to) || (t.from == s.to && t.to == s.from)) return Refusal::topology;
+    }
+    return Refusal::none;
 }
 
-bool RingMesh::turns(std::int32_t v, std::int32_t but_of, Vec3 p) const {
+bool RingMesh::folds(const Edge& edge, Vec3 p) const {
+    const auto turns = [&](std::int32_t v, const Sectors& sectors) {
+        const Vec3 at = position[v];
+        if (!collapse_lanes().may_spoil(position.data(), sectors.begin(), sectors.size(), at, p)) return false;
+        return std::any_of(sectors.begin(), sectors.end(), [&](const Sector& s) {
+            const Vec3 from = position[s.from], to = position[s.to];
+            return spoils(from - at, to - at, from - p, to - p);
+        });
+    };
+    return turns(edge.a, edge.of_a) || turns(edge.b, edge.of_b);
+}
+
+bool RingMesh::folds(std::int32_t v, Vec3 p) const {
     const std::int32_t start = first[v];
     std::int32_t c = start;
     if (start < 0) return false;
     const Vec3 at = position[v];
     do {
-        const std::int32_t s = vertex[after(c)], t = vertex[before(c)];
-        if (s != but_of && t != but_of) {
-            const Vec3 ps = position[s], pt = position[t];
-            if (spoils(ps - at, pt - at, ps - p, pt - p)) return true;
-        }
+        const Vec3 from = position[vertex[after(c)]], to = position[vertex[before(c)]];
+        if (spoils(from - at, to - at, from - p, to - p)) return true;
         c = next_[c];
     } while (c != start);
     return false;
 }
 
-bool RingMesh::folds(std::int32_t a, std::int32_t b, Vec3 p) const {
-    return turns(a, b, p) || turns(b, a, p);
-}
-
-void RingMesh::collapse(std::int32_t a, std::int32_t b, Vec3 p) {
+void RingMesh::collapse(const Edge& edge, Vec3 p) {
+    const std::int32_t a = edge.a, b = edge.b;
     const bool tags_matter = kind[a] != VertexKind::free || kind[b] != VertexKind::free;
     std::int32_t widened[8];  // third vertices of faces that go with a tagged side
     std::size_t widen = 0;
     std::int32_t head = -1, tail = -1;
-    for (const std::int32_t from : {a, b}) {
-        const std::int32_t start = first[from];
-        std::int32_t c = start;
-        do {
-            const std::int32_t then = next_[c], n = after(c), q = before(c);
-            const std::int32_t other = from == a ? b : a;
-            // Faces on both are met first from a, and have gone when b's corners come.
-            if (vertex[n] == other || vertex[q] == other) {
-                const std::int32_t third = vertex[n] == other ? q : n;
-                if (tags_matter && (tagged(c) || tagged(vertex[n] == other ? n : q)) && widen < 8)
-                    widened[widen++] = vertex[third];
-                unlink(third);
-                vertex[c] = vertex[third] = -1;  // the corner at b is told by its −1 neighbours
-                --faces_;
-            } else if (vertex[c] >= 0 && vertex[n] >= 0 && vertex[q] >= 0) {
-                vertex[c] = a;
-                if (head < 0)
-                    head = c;
-                else
-                    next_[tail] = c;
-                tail = c;
-            } else {
-                vertex[c] = -1;
-            }
-            c = then;
-        } while (c != start);
+    const auto keep = [&](std::int32_t corner) {
+        vertex[corner] = a;
+        (head < 0 ? head : next_[tail]) = corner;
+        tail = corner;
+    };
+    for (const Sector& s : edge.of_a) keep(s.corner);
+    for (const Sector& s : edge.of_b) keep(s.corner);
+    for (const Sector& s : edge.shared) {
+        const std::int32_t n = after(s.corner), q = before(s.corner);
+        const std::int32_t of_b = s.from == b ? n : q, third = of_b == n ? q : n;
+        if (tags_matter && (tagged(s.corner) || tagged(of_b)) && widen < 8) widened[widen++] = vertex[third];
+        unlink(third);
+        vertex[s.corner] = vertex[n] = vertex[q] = -1;
+        --faces_;
     }
     if (tail >= 0) next_[tail] = head;
     first[a] = head;

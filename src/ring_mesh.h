@@ -72,18 +72,47 @@ class RingMesh {
     /// vertices from those that need a closer look.
     void find_kinds();
 
-    /// Why a and b may not become one vertex, wherever it is put.
+    /// The corner of a face at a vertex, and the ends of the two sides there.
+    struct Sector {
+        std::int32_t corner, from, to;
+    };
+    /// Room that stays. Without a branch on whether an entry is kept, of which no processor could guess half.
+    class Sectors {
+      public:
+        void clear() { count_ = 0; }
+        void add(const Sector& s, bool kept = true) {
+            if (count_ == room_.size()) room_.resize(2 * count_);
+            room_[count_] = s;
+            count_ += kept;
+        }
+        std::size_t size() const { return count_; }
+        const Sector* begin() const { return room_.data(); }
+        const Sector* end() const { return begin() + count_; }
+
+      private:
+        std::vector<Sector> room_ = std::vector<Sector>(16);
+        std::size_t count_ = 0;
+    };
+    void gather(std::int32_t v, Sectors& sectors) const;
+    /// The faces around both ends of an edge, as they were when it was looked at.
+    struct Edge {
+        std::int32_t a, b;
+        Sectors of_a, of_b;  ///< of one of them alone
+        Sectors shared;      ///< of both, seen from a
+    };
+    void look(std::int32_t a, std::int32_t b, Edge& edge) const;
+    /// Why the ends may not become one vertex, wherever it is put.
     /// Link condition: Dey, Edelsbrunner, Guha, Nekhayev, "Topology Preserving Edge Contraction", 1999.
-    Refusal refusal(std::int32_t a, std::int32_t b, bool allow_topology);
-    /// Would a face turn over, or become a sliver, with a and b both at p?
-    bool folds(std::int32_t a, std::int32_t b, Vec3 p) const;
+    Refusal refusal(const Edge& edge, bool allow_topology);
+    /// Would a face turn over, or become a sliver, with both ends at p?
+    bool folds(const Edge& edge, Vec3 p) const;
+    /// b joins a at p; the faces on both go.
+    void collapse(const Edge& edge, Vec3 p);
     /// Would a face of v turn over, or become a sliver, with v at p?
-    bool folds(std::int32_t v, Vec3 p) const { return turns(v, -1, p); }
+    bool folds(std::int32_t v, Vec3 p) const;
     /// Vertices and faces that have gone give up their places; the order stays.
     /// \return the new number of each vertex, −1 of those that have gone.
     std::vector<std::int32_t> close_gaps();
-    /// b joins a at p; the faces on both go.
-    void collapse(std::int32_t a, std::int32_t b, Vec3 p);
 
     /// The only other corner opposite to the same side, −1 unless there is exactly one and it runs the other way.
     std::int32_t twin(std::int32_t corner) const;
@@ -94,25 +123,22 @@ class RingMesh {
     std::uint32_t new_marks(std::uint32_t count);
     void link_all();
     bool closed_fan(std::int32_t v, std::vector<std::int32_t>& follower);
-    Refusal free_refusal(std::int32_t a, std::int32_t b);
-    bool turns(std::int32_t v, std::int32_t but_of, Vec3 p) const;
+    Refusal free_refusal(const Edge& edge);
     void unlink(std::int32_t corner);
     void link(std::int32_t corner, std::int32_t v);
-    /// The corner of a face at a vertex, and the ends of the two sides there.
-    struct Sector {
-        std::int32_t corner, from, to;
-    };
-    void gather(std::int32_t v);
     bool all_in_one_fan() const;
     std::size_t parts() const;
     VertexKind kind_of(std::int32_t v);
 
     std::vector<std::int32_t> next_;
     std::vector<std::uint32_t> mark_;
-    std::vector<Sector> sectors_;  ///< of the vertex last gathered
+    Sectors sectors_;  ///< of the vertex last gathered
     std::uint32_t marks_ = 0;
     std::size_t faces_ = 0;
 };
+
+constexpr double least_cosine = 0.25;  ///< between a face's normals before and after a step
+constexpr double sliver = 2e-3;        ///< 2 area / Σ edge² below which a face is one; 0.289 is equilateral
 
 /// Whether a triangle that was (a, b, c) and becomes (a2, b2, c2) turns by more than some 75°, or becomes a sliver.
 bool turns_over(Vec3 a, Vec3 b, Vec3 c, Vec3 a2, Vec3 b2, Vec3 c2);

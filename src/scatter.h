@@ -13,19 +13,18 @@ namespace gaussmap {
 
 constexpr std::size_t scatter_batch = 64;
 
-/// N sums a vertex. `values(begin, end, corners)` fills double corners[end − begin][3][N] for the faces [begin, end),
-/// at most `scatter_batch`; all 0 where a face adds nothing. Contributions are added in ascending order of the faces
-/// for any number of threads (first_touch.h). \throw std::invalid_argument at an index outside [0, vertices).
-/// \param chunks  of the faces.
+/// Adds N sums a vertex to `sums`. `values(begin, end, corners)` fills double corners[end − begin][3][N] for the faces
+/// [begin, end), at most `scatter_batch`; all 0 where a face adds nothing. Contributions are added in ascending order
+/// of the faces for any number of threads (first_touch.h). \throw std::invalid_argument at an index outside [0,
+/// vertices). \param chunks  of the faces.
 template <int N, class Values>
-std::vector<double> scatter_batches(Triangles faces, std::size_t vertices, const FaceChunks& chunks,
-                                    const Execution& run, Values&& values) {
+void scatter_batches(Triangles faces, std::size_t vertices, const FaceChunks& chunks, const Execution& run,
+                     double* sums, Values&& values) {
     struct Late {
         std::int32_t vertex;
         double value[N];
     };
     constexpr std::size_t stretch = 1 << 14;
-    std::vector<double> sums(N * vertices, 0.0);
     std::vector<std::vector<Late>> late(chunks.count());
     const bool alone = chunks.count() == 1;
 
@@ -38,7 +37,7 @@ std::vector<double> scatter_batches(Triangles faces, std::size_t vertices, const
             for (std::size_t i = 3 * begin; i < 3 * stop; ++i, value += N) {
                 const std::int32_t vertex = faces.abc[i];
                 if (alone || chunks.owner[vertex] == chunk) {
-                    double* sum = &sums[N * static_cast<std::size_t>(vertex)];
+                    double* sum = sums + N * static_cast<std::size_t>(vertex);
                     for (int n = 0; n < N; ++n) sum[n] += value[n];
                 } else {
                     Late& l = late[chunk].emplace_back();
@@ -64,6 +63,14 @@ std::vector<double> scatter_batches(Triangles faces, std::size_t vertices, const
     for (const auto& list : late)
         for (const Late& l : list)
             for (int i = 0; i < N; ++i) sums[N * static_cast<std::size_t>(l.vertex) + i] += l.value[i];
+}
+
+/// The same, of sums that begin with 0.
+template <int N, class Values>
+std::vector<double> scatter_batches(Triangles faces, std::size_t vertices, const FaceChunks& chunks,
+                                    const Execution& run, Values&& values) {
+    std::vector<double> sums(N * vertices, 0.0);
+    scatter_batches<N>(faces, vertices, chunks, run, sums.data(), values);
     return sums;
 }
 

@@ -73,10 +73,10 @@ struct Vectors {
 };
 
 // The three coordinates of W vertices, transposed in registers. Reads 24 bytes a vertex, nothing beyond.
-template <int W>
+template <int W, int Stride = 3>
 GAUSSMAP_INLINE Vectors<W> gather(const double* xyz, const std::int32_t* index) {
     const double* p[W];
-    for (int l = 0; l < W; ++l) p[l] = xyz + 3 * static_cast<std::size_t>(index[3 * l]);
+    for (int l = 0; l < W; ++l) p[l] = xyz + 3 * static_cast<std::size_t>(index[Stride * l]);
     const auto xy_even = join<W>(p, 0), xy_odd = join<W>(p + 1, 0);
     const auto yz_even = join<W>(p, 1), yz_odd = join<W>(p + 1, 1);
     return {evens<W>(xy_even, xy_odd), odds<W>(xy_even, xy_odd), odds<W>(yz_even, yz_odd)};
