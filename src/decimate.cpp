@@ -92,7 +92,12 @@ std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, co
                   : options.fast ? CollapseCost::carried
                                  : CollapseCost::present;
     passes.faces = options.faces;
-    if (options.fast) passes.share = 0.2;
+    // Weights show in the order of collapses: the methods of the paper keep near to it, the fit levels what `best`
+    // loses.
+    if (options.method != DecimationMethod::best)
+        passes.share = 0.03;
+    else if (options.fast)
+        passes.share = 0.2;
     passes.border_weight = options.preserve_boundary ? 1000 : 1;
     passes.allow_topology = options.allow_topology;
     passes.run = part_of(options.run, 0.05, 0.5);
