@@ -81,36 +81,7 @@ Property interpolated_texture(const Property& from, const Decimation& made) {
 std::vector<std::uint8_t> texture_seams(const Geometry& geometry) {
     const Property* texture = texture_coordinates(geometry);
     if (!texture) return {};
-    const std::vector<double> values = texture->as_double();
-    struct Side {
-        std::int32_t low, high;
-        std::size_t corner;            ///< opposite to it
-        std::array<double, 4> values;  ///< at the lower vertex, at the higher one
-    };
-    std::vector<Side> sides;
-    sides.reserve(geometry.faces.size());
-    for (std::size_t f = 0; f < geometry.face_count(); ++f)
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-            if (geometry.faces[3 * f + i] > geometry.faces[3 * f + j]) std::swap(i, j);
-            const double* t = &values[texture->offsets[f]];
-            sides.push_back({geometry.faces[3 * f + i],
-                             geometry.faces[3 * f + j],
-                             3 * f + k,
-                             {t[2 * i], t[2 * i + 1], t[2 * j], t[2 * j + 1]}});
-        }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.corner < b.corner;
-    });
-    std::vector<std::uint8_t> seams(geometry.faces.size(), 0);
-    bool any = false;
-    for (std::size_t i = 1; i < sides.size(); ++i) {
-        const Side &a = sides[i - 1], &b = sides[i];
-        if (a.low != b.low || a.high != b.high || a.values == b.values) continue;
-        seams[a.corner] = seams[b.corner] = 1;
-        any = true;
-    }
-    return any ? seams : std::vector<std::uint8_t>{};
+    return gaussmap::corner_seams(geometry.faces, texture->as_double(), 2);
 }
 
 bool has_values_to_carry(const Geometry& geometry) {

@@ -13,6 +13,7 @@ namespace {
 
 using namespace nb::literals;
 
+using CornerValues = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Seams = nb::ndarray<const std::uint8_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 
 /// (faces, weights) of points of a surface, or None where there are none.
@@ -78,6 +79,13 @@ Record decimate(const PointArray& vertices, const FaceArray& faces, std::size_t 
     out["refused_topology"] = made.refused_topology;
     out["refused_folding"] = made.refused_folding;
     return out;
+}
+
+/// (m, 3) of the values of corners, (m, 3 × components), or None where there is no seam.
+nb::object corner_seams(const FaceArray& faces, const CornerValues& values) {
+    auto seams =
+        gaussmap::corner_seams(triangles(faces), {values.data(), values.data() + values.size()}, values.shape(1) / 3);
+    return seams.empty() ? nb::none() : nb::object(array(std::move(seams), 3));
 }
 
 nb::tuple deviation(const gaussmap::Deviation& way) {
@@ -161,6 +169,7 @@ void bind_surfaces(nb::module_& m) {
     m.def("decimate", decimate, "vertices"_a.noconvert(), "faces"_a.noconvert(), "target"_a, "error"_a, "method"_a,
           "objective"_a, "weights"_a, "fast"_a, "preserve_boundary"_a, "lock_border"_a, "feature_angle"_a,
           "allow_topology"_a, "sources"_a, "seams"_a.noconvert().none(), "threads"_a, "progress"_a.none());
+    m.def("corner_seams", corner_seams, "faces"_a.noconvert(), "values"_a.noconvert());
     m.def("surface_distance", surface_distance, "a"_a.noconvert(), "faces_a"_a.noconvert().none(), "b"_a.noconvert(),
           "faces_b"_a.noconvert().none(), "samples"_a, "seed"_a, "threads"_a, "progress"_a.none());
     m.def("hausdorff_bound", hausdorff_bound, "a"_a.noconvert(), "faces_a"_a.noconvert().none(), "b"_a.noconvert(),

@@ -97,4 +97,11 @@ struct Decimation {
 /// Time O(m log m), memory 200 bytes a face. The same bits for any number of threads.
 Decimation decimate(Points vertices, Triangles faces, const DecimateOptions& options);
 
+/// The sides at which values of corners tear, as texture coordinates do where charts end: where two faces do not agree
+/// on the values at both ends of their common side. For `DecimateOptions::seams`.
+/// \param values  `components` numbers a corner, 3 corners a face.
+/// \return a byte a corner, 1 where the side opposite to it is a seam; empty where there is none.
+/// \throw std::invalid_argument: another number of values. Time O(m log m).
+std::vector<std::uint8_t> corner_seams(Triangles faces, const std::vector<double>& values, std::size_t components);
+
 }  // namespace gaussmap

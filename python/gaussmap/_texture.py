@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from gaussmap import _gaussmap
 from gaussmap._arrays import AnyArray, Floats, Ints
 
 #: MeshLab's list of a face: u v of each of its three corners.
@@ -19,22 +20,7 @@ def of_corners(face_attributes: dict[str, AnyArray]) -> AnyArray | None:
 
 def seams(faces: Ints, texture: AnyArray) -> npt.NDArray[np.uint8] | None:
     """(m, 3), 1 where the side opposite to the corner has other coordinates in its next face; None where there is none."""
-    corners = np.arange(faces.size)
-    first = corners // 3 * 3
-    i, j = first + (corners + 1) % 3, first + (corners + 2) % 3
-    flat = faces.reshape(-1)
-    turned = flat[i] > flat[j]
-    i, j = np.where(turned, j, i), np.where(turned, i, j)
-    coordinates = texture.reshape(-1, 2)
-    order = np.lexsort((corners, flat[j], flat[i]))
-    low, high = flat[i][order], flat[j][order]
-    at = np.concatenate([coordinates[i], coordinates[j]], axis=1)[order]
-    torn = (low[1:] == low[:-1]) & (high[1:] == high[:-1]) & (at[1:] != at[:-1]).any(axis=1)
-    if not torn.any():
-        return None
-    out = np.zeros(faces.size, np.uint8)
-    out[order[1:][torn]] = out[order[:-1][torn]] = 1
-    return out.reshape(-1, 3)
+    return _gaussmap.corner_seams(faces, np.ascontiguousarray(texture, np.float64))
 
 
 def interpolated(face: Ints, weights: Floats, texture: AnyArray) -> AnyArray:

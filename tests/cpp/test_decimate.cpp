@@ -237,6 +237,26 @@ TEST(Decimate, FeaturesAreFollowed) {
     EXPECT_NEAR(ridge, 2, 0.01);
 }
 
+TEST(CornerSeams, AreSidesWhoseFacesDisagree) {
+    // A fan of three faces about vertex 0, open between 4 and 1; the values of corners are u v.
+    const std::vector<std::int32_t> faces = {0, 1, 2, 0, 2, 3, 3, 4, 0};
+    std::vector<double> uv = {0, 0, 1, 0, 2, 1, /**/ 0, 0, 2, 1, 3, 1, /**/ 3, 1, 4, 0, 0, 0};
+    EXPECT_TRUE(gaussmap::corner_seams(faces, uv, 2).empty());
+    uv[15] = 0.5;  // v of vertex 4, on no common side
+    EXPECT_TRUE(gaussmap::corner_seams(faces, uv, 2).empty());
+    uv[13] = 0.5;  // v of vertex 3 in the last face
+    EXPECT_EQ(gaussmap::corner_seams(faces, uv, 2), (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 1, 0}));
+    uv[0] = 0.25;  // u of vertex 0 in the first face
+    EXPECT_EQ(gaussmap::corner_seams(faces, uv, 2), (std::vector<std::uint8_t>{0, 1, 0, 0, 1, 1, 0, 1, 0}));
+    EXPECT_TRUE(gaussmap::corner_seams({}, {}, 2).empty());
+    try {
+        gaussmap::corner_seams(faces, uv, 3);
+        FAIL() << "18 numbers for 27 were taken";
+    } catch (const std::invalid_argument& e) {
+        EXPECT_STREQ(e.what(), "values has 18 entries, but there are 27 numbers of corners");
+    }
+}
+
 TEST(Decimate, SeamsStayAndValuesComeFromTheirSide) {
     const Surface s = gaussmap::waves(2, 2, 0.1, 1.5, 41, 41);
     // The left and the right half are charts; the seam is the line x = 0.
