@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decimation_input.h"
+#include "face_frame.h"
 #include "gaussmap/types.h"
 #include "ring_mesh.h"
 
@@ -31,6 +32,11 @@ struct AreaSamples : FitSamples {
 struct VertexSamples : FitSamples {
     std::vector<double> squared_distance;
 };
+
+inline FaceFrame frame_of(const RingMesh& mesh, std::int32_t f) {
+    const std::int32_t* v = &mesh.vertex[3 * f];
+    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]};
+}
 
 /// The samples of each face: those of f are items[begin[f]] … items[begin[f + 1] − 1].
 struct FaceSamples {
@@ -57,7 +63,7 @@ struct FitNorm {
 /// vertex of the fine one joined.
 AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32_t>& joined, const RingMesh& coarse,
                          const Execution& run);
-/// From the faces that the centres around a vertex have.
+/// From the face that a centre beside the vertex has.
 VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
                              const Execution& run);
 

@@ -7,8 +7,8 @@
 namespace gaussmap {
 namespace {
 
-constexpr int rounds = 5;
-constexpr int first_rounds = 3;  ///< those that flip; later there is next to nothing to gain
+constexpr int rounds = 3;
+constexpr int first_rounds = 2;  ///< those that flip; later there is next to nothing to gain
 constexpr int last_rounds = 2;   ///< those that look at greater distances more than at small ones, if that is wanted
 
 }  // namespace
