@@ -54,6 +54,17 @@ class Walk {
     Vec3 p_;
 };
 
+/// Of weighted squared distances.
+struct Mean {
+    double squares = 0, area = 0;
+    void add(double a, double squared) { squares += a * squared, area += a; }
+};
+double root_mean_square(const std::vector<Mean>& parts) {
+    Mean sum;
+    for (const Mean& part : parts) sum.squares += part.squares, sum.area += part.area;
+    return sum.squares > 0 ? std::sqrt(sum.squares / sum.area) : 0;
+}
+
 /// Indices grouped by a number each, −1 being left out; in their order.
 FaceSamples grouped(const std::vector<std::int32_t>& key, std::size_t groups) {
     FaceSamples rows;
@@ -70,8 +81,8 @@ FaceSamples grouped(const std::vector<std::int32_t>& key, std::size_t groups) {
 
 /// The face closest to each of the samples near a vertex. Most are settled at the vertex, whose faces are looked at for
 /// all of them.
-void assign_near(const RingMesh& mesh, FitSamples& samples, const FaceSamples& near, std::int32_t v,
-                 std::vector<std::pair<std::int32_t, FaceFrame>>& ring) {
+void assign_near(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& near, std::int32_t v,
+                 std::vector<std::pair<std::int32_t, FaceFrame>>& ring, Mean& distance) {
     ring.clear();
     mesh.for_corners(v, [&](std::int32_t c) { ring.emplace_back(c / 3, frame_of(mesh, c / 3)); });
     std::size_t last = 0;  // the face of one will do for the next, often
@@ -79,25 +90,29 @@ void assign_near(const RingMesh& mesh, FitSamples& samples, const FaceSamples& n
         const Vec3 p = samples.point[i];
         for (std::size_t k = 0; k < ring.size(); ++k) {
             const std::size_t at = last + k < ring.size() ? last + k : last + k - ring.size();
-            const FaceFrame& frame = ring[at].second;
-            if (!frame.settled(frame.foot(p))) continue;
+            const FaceFrame::Foot foot = ring[at].second.foot(p);
+            if (!ring[at].second.settled(foot)) continue;
             samples.face[i] = ring[at].first;
+            distance.add(samples.area[i], foot.height * foot.height);
             last = at;
             return;
         }
-        if (!ring.empty()) assign_around(mesh, samples, i, v);
+        if (!ring.empty()) distance.add(samples.area[i], assign_around(mesh, samples, i, v));
     });
 }
 
 /// \param start  the vertex of the coarse mesh that each sample is near to.
-void assign_first(const RingMesh& mesh, FitSamples& samples, const std::vector<std::int32_t>& start,
+void assign_first(const RingMesh& mesh, AreaSamples& samples, const std::vector<std::int32_t>& start,
                   const Execution& run) {
     samples.face.assign(samples.point.size(), -1);
-    const FaceSamples near = grouped(start, mesh.first.size());
-    for_blocks(mesh.first.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t v, std::size_t end) {
+    const std::size_t vertices = mesh.first.size();
+    const FaceSamples near = grouped(start, vertices);
+    std::vector<Mean> parts(block_count(vertices, faces_grain));
+    for_blocks(vertices, faces_grain, {run.threads, {}}, [&](std::size_t b, std::size_t v, std::size_t end) {
         std::vector<std::pair<std::int32_t, FaceFrame>> ring;
-        for (; v < end; ++v) assign_near(mesh, samples, near, static_cast<std::int32_t>(v), ring);
+        for (; v < end; ++v) assign_near(mesh, samples, near, static_cast<std::int32_t>(v), ring, parts[b]);
     });
+    samples.rms = root_mean_square(parts);
 }
 
 /// Vertices whose normal is shorter than those of their faces laid end to end, as where there are creases.
@@ -176,19 +191,17 @@ VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centr
     return out;
 }
 
-void assign_around(const RingMesh& mesh, FitSamples& samples, std::int32_t i, std::int32_t v) {
+double assign_around(const RingMesh& mesh, FitSamples& samples, std::int32_t i, std::int32_t v) {
     Walk walk(mesh, samples.point[i]);
     walk.look_around(v);
     walk.descend();
     samples.face[i] = walk.face;
+    return walk.hit.squared;
 }
 
-double assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const Execution& run) {
-    struct Part {
-        double squares = 0, area = 0;
-    };
+void assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const Execution& run) {
     const std::size_t faces = mesh.tags.size();
-    std::vector<Part> parts(block_count(faces, faces_grain));
+    std::vector<Mean> parts(block_count(faces, faces_grain));
     for_blocks(faces, faces_grain, {run.threads, {}}, [&](std::size_t b, std::size_t f, std::size_t end) {
         for (; f < end; ++f) {
             const auto face = static_cast<std::int32_t>(f);
@@ -203,13 +216,11 @@ double assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& row
                     samples.face[i] = walk.face;
                     squared = walk.hit.squared;
                 }
-                parts[b].squares += samples.area[i] * squared, parts[b].area += samples.area[i];
+                parts[b].add(samples.area[i], squared);
             });
         }
     });
-    Part sum;
-    for (const Part& part : parts) sum.squares += part.squares, sum.area += part.area;
-    return sum.squares > 0 ? std::sqrt(sum.squares / sum.area) : 0;
+    samples.rms = root_mean_square(parts);
 }
 
 FaceSamples by_face(const FitSamples& samples, std::size_t faces) {

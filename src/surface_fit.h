@@ -26,6 +26,7 @@ struct FitSamples {
 struct AreaSamples : FitSamples {
     std::vector<float> area;
     std::vector<std::int32_t> anchor;  ///< of each vertex of the coarse mesh: the sample nearest to it
+    double rms = 0;                    ///< distance from the coarse mesh, when the faces were last found
 };
 
 /// The vertices of the fine surface, where it is furthest from another.
@@ -67,11 +68,10 @@ AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32
 VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
                              const Execution& run);
 
-/// Find the closest faces again, walking from those that were, which `rows` holds. \return the root mean square
-/// distance.
-double assign(const RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const Execution& run);
-/// The same for one sample, from the faces around a vertex.
-void assign_around(const RingMesh& coarse, FitSamples& samples, std::int32_t sample, std::int32_t vertex);
+/// Find the closest faces again, walking from those that were, which `rows` holds.
+void assign(const RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const Execution& run);
+/// The same for one sample, from the faces around a vertex. \return its squared distance.
+double assign_around(const RingMesh& coarse, FitSamples& samples, std::int32_t sample, std::int32_t vertex);
 
 /// Move the free vertices of the coarse mesh.
 void move_vertices(RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const FitNorm& norm,
