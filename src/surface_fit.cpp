@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "face_frame.h"
-#include "local_quadric.h"
 #include "parallel.h"
 #include "triangle_closest.h"
 
@@ -15,15 +14,7 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1 << 12, faces_grain = 1 << 9;
-constexpr double overstep = 1.6;    ///< of a move that by itself is about half of what it could be
-constexpr double pull = 1e-3;       ///< towards no move, where the samples leave a direction free
 constexpr double straight = 0.998;  ///< of a vertex whose faces lie about in one plane: some 7° off on either side
-constexpr double astray = 5;        ///< how much more than the fine surface a vertex that is far from it counts
-
-FaceFrame frame_of(const RingMesh& mesh, std::int32_t f) {
-    const std::int32_t* v = &mesh.vertex[3 * f];
-    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]};
-}
 
 /// Walk from a face to closer ones, until none beside it is.
 class Walk {
@@ -63,31 +54,65 @@ class Walk {
     Vec3 p_;
 };
 
-/// The face closest to each sample, from the vertex of the coarse mesh that start(sample) names.
-template <class Start>
-void assign_first(const RingMesh& mesh, FitSamples& samples, const Execution& run, Start&& start) {
-    samples.face.assign(samples.point.size(), -1);
-    for_blocks(samples.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
-        std::int32_t before = -1;
-        FaceFrame frame;
-        for (; i < end; ++i) {
-            const std::int32_t v = start(i);
-            if (v < 0) continue;
-            const Vec3 p = samples.point[i];
-            // The one before is near: most often its face will do, if it is at the vertex.
-            const std::int32_t* e = before < 0 ? nullptr : &mesh.vertex[3 * before];
-            if (e && (e[0] == v || e[1] == v || e[2] == v) && frame.settled(frame.foot(p))) {
-                samples.face[i] = before;
-                continue;
-            }
-            Walk walk(mesh, p);
-            walk.look_around(v);
-            if (walk.face < 0) continue;
-            walk.descend();
-            if (walk.face != before) before = walk.face, frame = frame_of(mesh, before);
-            samples.face[i] = before;
+/// Of weighted squared distances.
+struct Mean {
+    double squares = 0, area = 0;
+    void add(double a, double squared) { squares += a * squared, area += a; }
+};
+double root_mean_square(const std::vector<Mean>& parts) {
+    Mean sum;
+    for (const Mean& part : parts) sum.squares += part.squares, sum.area += part.area;
+    return sum.squares > 0 ? std::sqrt(sum.squares / sum.area) : 0;
+}
+
+/// Indices grouped by a number each, −1 being left out; in their order.
+FaceSamples grouped(const std::vector<std::int32_t>& key, std::size_t groups) {
+    FaceSamples rows;
+    rows.begin.assign(groups + 2, 0);
+    for (const std::int32_t k : key)
+        if (k >= 0) ++rows.begin[k + 2];
+    std::partial_sum(rows.begin.begin(), rows.begin.end(), rows.begin.begin());
+    rows.items.resize(rows.begin.back());
+    for (std::size_t i = 0; i < key.size(); ++i)
+        if (key[i] >= 0) rows.items[rows.begin[key[i] + 1]++] = static_cast<std::int32_t>(i);
+    rows.begin.pop_back();
+    return rows;
+}
+
+/// The face closest to each of the samples near a vertex. Most are settled at the vertex, whose faces are looked at for
+/// all of them.
+void assign_near(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& near, std::int32_t v,
+                 std::vector<std::pair<std::int32_t, FaceFrame>>& ring, Mean& distance) {
+    ring.clear();
+    mesh.for_corners(v, [&](std::int32_t c) { ring.emplace_back(c / 3, frame_of(mesh, c / 3)); });
+    std::size_t last = 0;  // the face of one will do for the next, often
+    near.for_each(v, [&](std::int32_t i) {
+        const Vec3 p = samples.point[i];
+        for (std::size_t k = 0; k < ring.size(); ++k) {
+            const std::size_t at = last + k < ring.size() ? last + k : last + k - ring.size();
+            const FaceFrame::Foot foot = ring[at].second.foot(p);
+            if (!ring[at].second.settled(foot)) continue;
+            samples.face[i] = ring[at].first;
+            distance.add(samples.area[i], foot.height * foot.height);
+            last = at;
+            return;
         }
+        if (!ring.empty()) distance.add(samples.area[i], assign_around(mesh, samples, i, v));
     });
+}
+
+/// \param start  the vertex of the coarse mesh that each sample is near to.
+void assign_first(const RingMesh& mesh, AreaSamples& samples, const std::vector<std::int32_t>& start,
+                  const Execution& run) {
+    samples.face.assign(samples.point.size(), -1);
+    const std::size_t vertices = mesh.first.size();
+    const FaceSamples near = grouped(start, vertices);
+    std::vector<Mean> parts(block_count(vertices, faces_grain));
+    for_blocks(vertices, faces_grain, {run.threads, {}}, [&](std::size_t b, std::size_t v, std::size_t end) {
+        std::vector<std::pair<std::int32_t, FaceFrame>> ring;
+        for (; v < end; ++v) assign_near(mesh, samples, near, static_cast<std::int32_t>(v), ring, parts[b]);
+    });
+    samples.rms = root_mean_square(parts);
 }
 
 /// Vertices whose normal is shorter than those of their faces laid end to end, as where there are creases.
@@ -138,7 +163,9 @@ AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32
                     out.area[at] += share, out.area[f] -= share;
         }
     }
-    assign_first(coarse, out, run, [&](std::size_t i) { return joined[i < n ? in.corners[3 * i] : bent[i - n]]; });
+    std::vector<std::int32_t> start(out.point.size());
+    for (std::size_t i = 0; i < start.size(); ++i) start[i] = joined[i < n ? in.corners[3 * i] : bent[i - n]];
+    assign_first(coarse, out, start, run);
     out.anchor.assign(coarse.first.size(), 0);
     for (std::size_t c = in.corners.size(); c-- > 0;)
         if (const std::int32_t v = joined[in.corners[c]]; v >= 0) out.anchor[v] = static_cast<std::int32_t>(c / 3);
@@ -151,13 +178,7 @@ VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centr
     out.point = in.positions;
     out.face.assign(out.point.size(), -1);
     out.squared_distance.assign(out.point.size(), HUGE_VAL);
-    for (std::size_t c = 0; c < in.corners.size(); ++c) {
-        const std::int32_t v = in.corners[c], f = centres.face[c / 3];
-        if (f < 0 || f == out.face[v]) continue;
-        Walk walk(coarse, out.point[v]);
-        walk.look(f);
-        if (walk.hit.squared < out.squared_distance[v]) out.squared_distance[v] = walk.hit.squared, out.face[v] = f;
-    }
+    for (std::size_t c = 0; c < in.corners.size(); ++c) out.face[in.corners[c]] = centres.face[c / 3];
     for_blocks(out.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
         for (; i < end; ++i) {
             if (out.face[i] < 0) continue;
@@ -170,19 +191,17 @@ VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centr
     return out;
 }
 
-void assign_around(const RingMesh& mesh, FitSamples& samples, std::int32_t i, std::int32_t v) {
+double assign_around(const RingMesh& mesh, FitSamples& samples, std::int32_t i, std::int32_t v) {
     Walk walk(mesh, samples.point[i]);
     walk.look_around(v);
     walk.descend();
     samples.face[i] = walk.face;
+    return walk.hit.squared;
 }
 
-double assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const Execution& run) {
-    struct Part {
-        double squares = 0, area = 0;
-    };
+void assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const Execution& run) {
     const std::size_t faces = mesh.tags.size();
-    std::vector<Part> parts(block_count(faces, faces_grain));
+    std::vector<Mean> parts(block_count(faces, faces_grain));
     for_blocks(faces, faces_grain, {run.threads, {}}, [&](std::size_t b, std::size_t f, std::size_t end) {
         for (; f < end; ++f) {
             const auto face = static_cast<std::int32_t>(f);
@@ -197,190 +216,15 @@ double assign(const RingMesh& mesh, AreaSamples& samples, const FaceSamples& row
                     samples.face[i] = walk.face;
                     squared = walk.hit.squared;
                 }
-                parts[b].squares += samples.area[i] * squared, parts[b].area += samples.area[i];
+                parts[b].add(samples.area[i], squared);
             });
         }
     });
-    Part sum;
-    for (const Part& part : parts) sum.squares += part.squares, sum.area += part.area;
-    return sum.squares > 0 ? std::sqrt(sum.squares / sum.area) : 0;
+    samples.rms = root_mean_square(parts);
 }
 
 FaceSamples by_face(const FitSamples& samples, std::size_t faces) {
-    FaceSamples rows;
-    rows.begin.assign(faces + 2, 0);
-    for (const std::int32_t f : samples.face)
-        if (f >= 0) ++rows.begin[f + 2];
-    std::partial_sum(rows.begin.begin(), rows.begin.end(), rows.begin.begin());
-    rows.items.resize(rows.begin.back());
-    for (std::size_t i = 0; i < samples.face.size(); ++i)
-        if (samples.face[i] >= 0) rows.items[rows.begin[samples.face[i] + 1]++] = static_cast<std::int32_t>(i);
-    rows.begin.pop_back();
-    return rows;
-}
-
-namespace {
-
-/// What planes ask of a move x: that xᵀ A x − 2 b·x be small.
-struct Planes {
-    Symmetric a;
-    Vec3 b;
-
-    /// The plane through p of the unit normal n.
-    void add(Vec3 n, Vec3 p, double weight) {
-        a.add_normal(n, weight);
-        b = b + weight * dot(n, p) * n;
-    }
-    Planes& operator+=(const Planes& other) {
-        a += other.a, b = b + other.b;
-        return *this;
-    }
-    /// The best move, held to none where the planes leave a direction free.
-    Vec3 move() const {
-        const double held = pull * a.trace();
-        const Vec3 best = held > 0 ? HeldInverse(a, held).times(b) : Vec3{};
-        return finite(best) ? best : Vec3{};
-    }
-};
-
-/// What the samples of a face ask of one of its corners. Single precision will do: it is a step, taken again.
-struct Wish {
-    float xx, xy, xz, yy, yz, zz, x, y, z;  ///< planes, for the corner's move
-    float most;                             ///< squared distance of the samples
-    float nearest;                          ///< squared distance of the corner from …
-    std::int32_t sample;                    ///< … the nearest of them; −1: none
-
-    void take(const Planes& p) {
-        const auto single = [](double a) { return static_cast<float>(a); };
-        xx = single(p.a.xx), xy = single(p.a.xy), xz = single(p.a.xz), yy = single(p.a.yy), yz = single(p.a.yz);
-        zz = single(p.a.zz), x = single(p.b.x), y = single(p.b.y), z = single(p.b.z);
-    }
-    Planes planes() const { return {{xx, xy, xz, yy, yz, zz}, {x, y, z}}; }
-};
-
-/// The residuals along their own directions, each taken as falling with a corner's weight at the closest point.
-/// By convexity, Σ (r − Σ_j b_j x_j)² ≤ Σ_j Σ b_j (r − x_j)² for weights b_j that add up to 1, so that all vertices may
-/// move at once. \param wish  three, of the corners.
-void ask(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows, std::int32_t f, const FitNorm& norm,
-         Wish* wish) {
-    std::array<Planes, 3> planes;
-    std::array<double, 3> nearest{HUGE_VAL, HUGE_VAL, HUGE_VAL};
-    std::array<std::int32_t, 3> sample{-1, -1, -1};
-    const FaceFrame frame = frame_of(mesh, f);
-    double most = 0;
-    std::array<double, 3> weights{}, heights{};  // of the samples that are straight above the face
-    rows.for_each(f, [&](std::int32_t i) {
-        const Vec3 p = samples.point[i];
-        for (std::size_t k = 0; k < 3; ++k) {
-            const double apart = squared(p - frame.corner[k]);
-            if (apart < nearest[k]) nearest[k] = apart, sample[k] = i;
-        }
-        const FaceFrame::Foot foot = frame.foot(p);
-        if (foot.inside) {
-            const double d = foot.height * foot.height, weight = samples.area[i] * norm.weight(d);
-            most = std::max(most, d);
-            for (std::size_t k = 0; k < 3; ++k)
-                weights[k] += weight * foot.weights[k], heights[k] += weight * foot.weights[k] * foot.height;
-            return;
-        }
-        const auto& [a, b, c] = frame.corner;
-        const TriangleHit hit = closest_on_triangle(p, a, b, c);
-        if (!(hit.squared > 0)) return;
-        most = std::max(most, hit.squared);
-        const double weight = samples.area[i] * norm.weight(hit.squared);
-        const Vec3 r = p - (hit.u * a + hit.v * b + hit.w * c);
-        const std::array<double, 3> shares{hit.u, hit.v, hit.w};
-        for (std::size_t k = 0; k < 3; ++k)
-            if (shares[k] > 0) planes[k].add(1 / std::sqrt(hit.squared) * r, r, weight * shares[k]);
-    });
-    for (std::size_t k = 0; k < 3; ++k) {
-        if (weights[k] > 0) planes[k].add(frame.normal, heights[k] / weights[k] * frame.normal, weights[k]);
-        wish[k].take(planes[k]);
-        wish[k].most = static_cast<float>(most);
-        wish[k].nearest = static_cast<float>(nearest[k]);
-        wish[k].sample = sample[k];
-    }
-}
-
-/// The sample nearest to v: the one that was, or one of its faces; where these have none, one that a neighbour had.
-std::int32_t nearest_sample(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish,
-                            std::int32_t v) {
-    std::int32_t nearest = samples.anchor[v];
-    double least = squared(samples.point[nearest] - mesh.position[v]);
-    bool alone = true;
-    mesh.for_corners(v, [&](std::int32_t c) {
-        alone = alone && wish[c].sample < 0;
-        if (wish[c].sample >= 0 && wish[c].nearest < least) least = wish[c].nearest, nearest = wish[c].sample;
-    });
-    if (!alone) return nearest;
-    mesh.for_corners(v, [&](std::int32_t c) {
-        for (const std::int32_t k : {RingMesh::after(c), RingMesh::before(c)}) {
-            const std::int32_t sample = samples.anchor[mesh.vertex[k]];
-            const double apart = squared(samples.point[sample] - mesh.position[v]);
-            if (apart < least) least = apart, nearest = sample;
-        }
-    });
-    return nearest;
-}
-
-/// Where v goes.
-Vec3 wanted_move(const RingMesh& mesh, const AreaSamples& samples, const std::vector<Wish>& wish, std::int32_t v,
-                 std::int32_t anchor, const FitNorm& norm) {
-    Planes sum;
-    double ring_area = 0;  // a third of it
-    double most = 0, shortest = HUGE_VAL;
-    const Vec3 at = mesh.position[v];
-    mesh.for_corners(v, [&](std::int32_t c) {
-        const Vec3 s = mesh.position[mesh.vertex[RingMesh::after(c)]] - at,
-                   t = mesh.position[mesh.vertex[RingMesh::before(c)]] - at;
-        ring_area += length(cross(s, t)) / 6;
-        shortest = std::min(shortest, squared(s));
-        sum += wish[c].planes();
-        most = std::max(most, static_cast<double>(wish[c].most));
-    });
-    // Back to the fine surface: no sample may feel a spike.
-    const double spacing = std::sqrt(static_cast<double>(samples.area[anchor]));
-    const Vec3 back = samples.point[anchor] - at;
-    most = std::max(most, squared(back));
-    const double d = length(back), excess = d - spacing;
-    if (excess > 0) sum.add(1 / d * back, excess / d * back, astray * ring_area);
-    // Weights that grow with the distances to be made small call for shorter steps.
-    Vec3 move = overstep / (norm.power - 1) * sum.move();
-    // No further than the surface is away, several times over where it is met askew, nor past a neighbour.
-    const double bound = std::min(3 * std::sqrt(most), 0.3 * std::sqrt(shortest)), l = length(move);
-    if (l > bound) move = bound / l * move;
-    // Never far from every sample.
-    const Vec3 off = move - back;
-    const double away = length(off), trust = 3 / norm.scale + spacing;
-    return away > trust ? back + trust / away * off : move;
-}
-
-}  // namespace
-
-void move_vertices(RingMesh& mesh, AreaSamples& samples, const FaceSamples& rows, const FitNorm& norm,
-                   const Execution& run) {
-    std::vector<Wish> wish(mesh.vertex.size());
-    for_blocks(mesh.tags.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
-        for (; f < end; ++f) ask(mesh, samples, rows, static_cast<std::int32_t>(f), norm, &wish[3 * f]);
-    });
-    std::vector<Vec3> move(mesh.first.size());
-    std::vector<std::int32_t> anchor(mesh.first.size());
-    for_blocks(move.size(), faces_grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
-        for (; i < end; ++i) {
-            const auto v = static_cast<std::int32_t>(i);
-            anchor[i] = nearest_sample(mesh, samples, wish, v);
-            if (mesh.kind[i] == VertexKind::free) move[i] = wanted_move(mesh, samples, wish, v, anchor[i], norm);
-        }
-    });
-    samples.anchor = std::move(anchor);
-    for (std::size_t v = 0; v < move.size(); ++v)
-        for (int halvings = 0; halvings < 3; ++halvings) {
-            if (mesh.kind[v] != VertexKind::free) break;
-            const Vec3 p = mesh.position[v] + std::ldexp(1.0, -halvings) * move[v];
-            if (mesh.folds(static_cast<std::int32_t>(v), p)) continue;
-            mesh.position[v] = p;
-            break;
-        }
+    return grouped(samples.face, faces);
 }
 
 }  // namespace gaussmap

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "decimation_input.h"
+#include "face_frame.h"
 #include "gaussmap/types.h"
 #include "ring_mesh.h"
 
@@ -25,12 +26,18 @@ struct FitSamples {
 struct AreaSamples : FitSamples {
     std::vector<float> area;
     std::vector<std::int32_t> anchor;  ///< of each vertex of the coarse mesh: the sample nearest to it
+    double rms = 0;                    ///< distance from the coarse mesh, when the faces were last found
 };
 
 /// The vertices of the fine surface, where it is furthest from another.
 struct VertexSamples : FitSamples {
     std::vector<double> squared_distance;
 };
+
+inline FaceFrame frame_of(const RingMesh& mesh, std::int32_t f) {
+    const std::int32_t* v = &mesh.vertex[3 * f];
+    return {mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]};
+}
 
 /// The samples of each face: those of f are items[begin[f]] … items[begin[f + 1] − 1].
 struct FaceSamples {
@@ -57,15 +64,14 @@ struct FitNorm {
 /// vertex of the fine one joined.
 AreaSamples area_samples(const DecimationInput& in, const std::vector<std::int32_t>& joined, const RingMesh& coarse,
                          const Execution& run);
-/// From the faces that the centres around a vertex have.
+/// From the face that a centre beside the vertex has.
 VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centres, const RingMesh& coarse,
                              const Execution& run);
 
-/// Find the closest faces again, walking from those that were, which `rows` holds. \return the root mean square
-/// distance.
-double assign(const RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const Execution& run);
-/// The same for one sample, from the faces around a vertex.
-void assign_around(const RingMesh& coarse, FitSamples& samples, std::int32_t sample, std::int32_t vertex);
+/// Find the closest faces again, walking from those that were, which `rows` holds.
+void assign(const RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const Execution& run);
+/// The same for one sample, from the faces around a vertex. \return its squared distance.
+double assign_around(const RingMesh& coarse, FitSamples& samples, std::int32_t sample, std::int32_t vertex);
 
 /// Move the free vertices of the coarse mesh.
 void move_vertices(RingMesh& coarse, AreaSamples& samples, const FaceSamples& rows, const FitNorm& norm,

@@ -119,6 +119,18 @@ bool worth_it(const Quad& q, const AreaSamples& samples, const FaceSamples& rows
     return after < 0.98 * before || (after <= 1.01 * before && q.new_shape() > 1.5 * q.shape());
 }
 
+/// Is the side opposite to a corner to be flipped? Its twin is asked nothing.
+bool wants_flip(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows,
+                const std::vector<Outlook>& outlook, std::int32_t corner, const FitNorm& norm) {
+    const std::int32_t twin = outlook[corner].twin;
+    if (twin < corner || mesh.vertex[corner] == mesh.vertex[twin]) return false;
+    const double cost = outlook[corner].cost + outlook[twin].cost, gain = outlook[corner].gain + outlook[twin].gain;
+    const Quad quad = quad_of(mesh, corner, twin);
+    // What is not even likely is not tried.
+    if (gain < 0.01 * cost && (gain < -0.05 * cost || quad.new_shape() <= 1.5 * quad.shape())) return false;
+    return !quad.folds() && worth_it(quad, samples, rows, norm);
+}
+
 }  // namespace
 
 std::size_t flip_sides(RingMesh& mesh, AreaSamples& samples, const FitNorm& norm, const Execution& run) {
@@ -130,18 +142,17 @@ std::size_t flip_sides(RingMesh& mesh, AreaSamples& samples, const FitNorm& norm
             std::copy(of_face.begin(), of_face.end(), &outlook[3 * f]);
         }
     });
+    std::vector<std::uint8_t> wanted(mesh.vertex.size());
+    for_blocks(wanted.size(), 3 << 9, {run.threads, {}}, [&](std::size_t, std::size_t c, std::size_t end) {
+        for (; c < end; ++c) wanted[c] = wants_flip(mesh, samples, rows, outlook, static_cast<std::int32_t>(c), norm);
+    });
     std::vector<bool> done(mesh.tags.size(), false);
     std::size_t flips = 0;
     for (std::size_t i = 0; i < mesh.vertex.size(); ++i) {
+        if (!wanted[i]) continue;
         const auto corner = static_cast<std::int32_t>(i);
-        const std::int32_t twin = outlook[i].twin;
-        if (twin < corner || done[i / 3] || done[twin / 3]) continue;
-        const double cost = outlook[corner].cost + outlook[twin].cost, gain = outlook[corner].gain + outlook[twin].gain;
-        const Quad quad = quad_of(mesh, corner, twin);
-        // What is not even likely is not tried.
-        if (gain < 0.01 * cost && (gain < -0.05 * cost || quad.new_shape() <= 1.5 * quad.shape())) continue;
-        const std::int32_t a = mesh.vertex[corner], d = mesh.vertex[twin];
-        if (a == d || quad.folds() || joined(mesh, a, d) || !worth_it(quad, samples, rows, norm)) continue;
+        const std::int32_t twin = outlook[i].twin, a = mesh.vertex[corner];
+        if (done[corner / 3] || done[twin / 3] || joined(mesh, a, mesh.vertex[twin])) continue;
         mesh.flip(corner, twin);
         for (const std::int32_t face : {corner / 3, twin / 3}) {
             done[face] = true;

@@ -13,6 +13,9 @@
 namespace gaussmap {
 namespace {
 
+constexpr std::size_t grain = 1 << 9;
+constexpr double part = 0.64;  ///< of the greatest height, that all are brought below before others are looked for
+
 /// Heights are squared distances. One that is no more than `low` may be given as any that is not either.
 class Peaks {
   public:
@@ -73,57 +76,42 @@ class Peaks {
         std::fill(first_.begin(), first_.end(), -1);
         low_ = 0;
         for (std::size_t i = squared_.size(); i-- > 0;)
-            if (vertices_.face[i] >= 0) low_ = std::max(low_, 0.25 * squared_[i]), put(static_cast<std::int32_t>(i));
-        find_back(run);
+            if (vertices_.face[i] >= 0) low_ = std::max(low_, part * squared_[i]), put(static_cast<std::int32_t>(i));
+        const std::vector<double> apart = corners_apart(run);
+        low_ = std::max(low_, part * *std::max_element(apart.begin(), apart.end()));
+        for_blocks(height_.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
+            for (; i < end; ++i) {
+                const auto f = static_cast<std::int32_t>(i);
+                height_[f] = there(f);
+                const std::int32_t* v = &mesh_.vertex[3 * f];
+                // Below what lies over it and is near, a face is near too.
+                if (std::max({2 * height_[f], apart[v[0]], apart[v[1]], apart[v[2]]}) > low_ || !covered(f))
+                    height_[f] = std::max(height_[f], back(f, corners(f), HUGE_VAL).squared);
+            }
+        });
         for (std::size_t f = 0; f < height_.size(); ++f)
             if (height_[f] > low_) queue_.push({height_[f], static_cast<std::int32_t>(f)});
         return !queue_.empty();
     }
 
-    /// Heights of all faces: each place once, be it on several.
-    void find_back(const Execution& run) {
-        const auto in_blocks = [&](std::size_t count, auto&& body) {
-            for_blocks(count, 1 << 9, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
-                for (; i < end; ++i) body(i);
-            });
-        };
-        std::vector<double> of_vertex(mesh_.first.size()), of_side(mesh_.vertex.size(), 0);
-        in_blocks(of_vertex.size(), [&](std::size_t v) {
-            const Vec3 p = mesh_.position[v];
-            Nearest nearest{p};
-            mesh_.for_corners(static_cast<std::int32_t>(v), [&](std::int32_t c) { look(c / 3, nearest); });
-            of_vertex[v] = closest_face(fine_, p, guess(nearest), low_).squared;
-        });
-        in_blocks(of_side.size(), [&](std::size_t c) {
-            const auto corner = static_cast<std::int32_t>(c);
-            const std::int32_t twin = mesh_.twin(corner);
-            if (twin > corner) return;
-            const Vec3 a = mesh_.position[mesh_.vertex[RingMesh::after(corner)]],
-                       b = mesh_.position[mesh_.vertex[RingMesh::before(corner)]];
-            for (int i = 1; i < steps_; ++i) {
-                const double t = static_cast<double>(i) / steps_;
-                const Vec3 p = (1 - t) * a + t * b;
-                Nearest nearest{p};
-                look(corner / 3, nearest);
-                if (twin >= 0) look(twin / 3, nearest);
-                of_side[c] = std::max(of_side[c], closest_face(fine_, p, guess(nearest), low_).squared);
+    /// From the vertices to the fine surface.
+    std::vector<double> corners_apart(const Execution& run) const {
+        std::vector<double> apart(mesh_.first.size());
+        for_blocks(apart.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t v, std::size_t end) {
+            for (double enough = low_; v < end; ++v) {
+                const Vec3 p = mesh_.position[v];
+                apart[v] = closest_face(fine_, p, hit_of_sample(centres_.anchor[v], p), enough).squared;
+                enough = std::max(enough, part * apart[v]);
             }
         });
-        in_blocks(height_.size(), [&](std::size_t i) {
-            const auto f = static_cast<std::int32_t>(i);
-            height_[i] = there(f);
-            const auto [a, b, c] = corners(f);
-            for (const Vec3 w : grid_) {
-                if (!(w.x > 0 && w.y > 0 && w.z > 0)) continue;
-                Nearest nearest{w.x * a + w.y * b + w.z * c};
-                look(f, nearest);
-                height_[i] = std::max(height_[i], closest_face(fine_, nearest.to, guess(nearest), low_).squared);
-            }
-            for (std::int32_t k = 3 * f; k < 3 * f + 3; ++k) {
-                const std::int32_t twin = mesh_.twin(k);
-                height_[i] = std::max({height_[i], of_vertex[mesh_.vertex[k]], of_side[twin > k ? twin : k]});
-            }
-        });
+        return apart;
+    }
+    /// Is there about as much of the fine surface over a face as it is large?
+    bool covered(std::int32_t f) const {
+        double area = 0;
+        rows_.for_each(f, [&](std::int32_t i) { area += centres_.area[i]; });
+        const auto [a, b, c] = corners(f);
+        return area > 0.25 * length(cross(b - a, c - a));
     }
 
     std::array<Vec3, 3> corners(std::int32_t f) const {
@@ -183,6 +171,10 @@ class Peaks {
         });
     }
     FaceHit guess(const Nearest& nearest) const { return hit_of(fine_, nearest.centre, nearest.to); }
+    /// The face that a sample is the centre of, if it is one's.
+    FaceHit hit_of_sample(std::int32_t sample, Vec3 p) const {
+        return hit_of(fine_, 3 * static_cast<std::size_t>(sample) < fine_.corners.size() ? sample : -1, p);
+    }
 
     /// The greatest distance around v, were it at p; no more than is needed to see that it is at least `enough`.
     double height_at(std::int32_t v, Vec3 p, double enough) {

@@ -7,8 +7,8 @@
 namespace gaussmap {
 namespace {
 
-constexpr int rounds = 5;
-constexpr int first_rounds = 3;  ///< those that flip; later there is next to nothing to gain
+constexpr int rounds = 3;
+constexpr int first_rounds = 2;  ///< those that flip; later there is next to nothing to gain
 constexpr int last_rounds = 2;   ///< those that look at greater distances more than at small ones, if that is wanted
 
 }  // namespace
@@ -18,18 +18,17 @@ void bring_nearer(RingMesh& coarse, const DecimationInput& in, const FaceBoxes& 
     if (coarse.face_count() == 0) return;
     const std::size_t faces = coarse.face_count();
     AreaSamples samples = area_samples(in, joined, coarse, run);
-    double size = assign(coarse, samples, by_face(samples, faces), run);
-    for (int round = 0; round < rounds && size > 0; ++round) {
+    for (int round = 0; round < rounds && samples.rms > 0; ++round) {
         FitNorm norm;
-        norm.scale = 1 / size;
+        norm.scale = 1 / samples.rms;
         if (objective == DecimationObjective::max && round >= rounds - last_rounds) norm.power = 3;
         const FaceSamples rows = by_face(samples, faces);
         move_vertices(coarse, samples, rows, norm, run);
-        size = assign(coarse, samples, rows, run);
+        assign(coarse, samples, rows, run);
         if (round < first_rounds) flip_sides(coarse, samples, norm, run);
         if (run.progress && !run.progress((round + 1.0) / (rounds + 1))) throw Cancelled();
     }
-    if (size == 0 || objective == DecimationObjective::rms) return;
+    if (samples.rms == 0 || objective == DecimationObjective::rms) return;
     VertexSamples vertices = vertex_samples(in, samples, coarse, run);
     lower_peaks(coarse, samples, vertices, fine, run);
 }
