@@ -8,19 +8,6 @@
 namespace gaussmap {
 namespace {
 
-/// A bit a lane.
-GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
-#if defined __AVX2__
-    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask));
-#elif defined __SSE2__
-    return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
-#else
-    unsigned bits = 0;
-    for (int l = 0; l < lanes; ++l) bits |= static_cast<unsigned>(mask[l] & 1) << l;
-    return bits;
-#endif
-}
-
 struct Box {
     double low[3], high[3];
 };

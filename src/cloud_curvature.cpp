@@ -15,9 +15,9 @@
 #include "check.h"
 #include "check_cloud.h"
 #include "clock.h"
-#include "degenerate.h"
 #include "estimators.h"
 #include "fan.h"
+#include "fan_energy.h"
 #include "fitted_cloud.h"
 #include "frame.h"
 #include "gaussmap/curvature.h"
@@ -33,63 +33,6 @@ namespace {
 constexpr std::size_t grain = 4096;         ///< points a block; whole nodes of the tree
 constexpr std::size_t batch = leaf_points;  ///< points that go through the stages of a block together
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-struct Energy {
-    double kappa = 0, area = 0;
-};
-
-/// Of the triangle (0, a, b) with unit normals at its corners, eq. (3) of docs/method.md:
-/// kappa = ½ Σ cot(α) |dn|² over the edges, cot(α) = (product of the edges that meet in α) / (2 area).
-Energy triangle_energy(Vec3 a, Vec3 b, Vec3 normal, Vec3 normal_a, Vec3 normal_b) {
-    const double at_point = dot(a, b), at_a = dot(a, a - b), at_b = dot(b, b - a);
-    const double sum =
-        at_point * squared(normal_b - normal_a) + at_a * squared(normal_b - normal) + at_b * squared(normal_a - normal);
-    const double cross_squared = squared(cross(a, b));
-    if (!std::isfinite(sum) || no_area(cross_squared, at_point + at_a + at_b)) return {};
-    const double twice_area = std::sqrt(cross_squared);
-    // Never negative; rounding could make it so by its last bit.
-    return {std::max(sum, 0.0) / (2 * twice_area), twice_area / 2};
-}
-
-/// Over the fan of a point, its corners being the neighbours in turn, in units of the scaled neighbourhood. With
-/// `align`, normals that look away from the centre's are turned round.
-Energy fan_energy(const Neighborhood& corners, bool closed, const double* normals, Vec3 normal, bool align) {
-    const auto normal_of = [&](std::size_t c) {
-        const Vec3 other = load(normals + 3 * static_cast<std::size_t>(corners.index[c]));
-        return align && dot(other, normal) < 0 ? -other : other;
-    };
-    Energy sum;
-    if (corners.count == 0) return sum;
-    std::size_t before = closed ? corners.count - 1 : 0;
-    Vec3 normal_before = normal_of(before);
-    for (std::size_t c = closed ? 0 : 1; c < corners.count; ++c) {
-        const Vec3 normal_here = normal_of(c);
-        const Energy energy =
-            triangle_energy(corners.offset(before), corners.offset(c), normal, normal_before, normal_here);
-        sum.kappa += energy.kappa;
-        sum.area += energy.area;
-        before = c;
-        normal_before = normal_here;
-    }
-    return sum;
-}
-
-/// The fans of some points.
-struct Chains {
-    struct One {
-        std::int32_t point;
-        std::uint32_t begin, size;
-        bool closed;
-    };
-    std::vector<One> fans;
-    std::vector<std::int32_t> corners;
-
-    void add(std::size_t point, bool closed, const std::int32_t* chain, std::size_t size) {
-        fans.push_back({static_cast<std::int32_t>(point), static_cast<std::uint32_t>(corners.size()),
-                        static_cast<std::uint32_t>(size), closed});
-        corners.insert(corners.end(), chain, chain + size);
-    }
-};
 
 /// What a block counts, and what it leaves.
 struct Block {
@@ -120,27 +63,35 @@ void take_normals(Points normals, Work& work, const Execution& run) {
     });
 }
 
+/// Of the fan of a point.
+void measure_tensor(const Work& work, const Chains& chains, const Chains::One& fan, bool align, Neighborhood& corners,
+                    CloudCurvature& result) {
+    const auto i = static_cast<std::size_t>(fan.point);
+    corners.gather(work.cloud, i, chains.begin(fan), fan.size);
+    store(result.tensor, work.source(i), fan_tensor(corners, fan.closed, work.normals.data(), work.normal(i), align));
+}
+
 /// The last stage: densities of fans whose normals are all there.
 void measure(const Work& work, const Chains& chains, CloudCurvature& result) {
-    const bool align = !work.given && work.options.orientation == Orientation::local;
+    const FanNormals normals = {work.normals.data(), !work.given && work.options.orientation == Orientation::local};
+    const auto place = [&](std::size_t f) { return work.source(static_cast<std::size_t>(chains.fans[f].point)); };
     constexpr std::size_t ahead = 8;
-    Neighborhood corners(work.k);
+    LaneStrips strips;
+    LaneEnergies energies;
+    Neighborhood corners(work.options.tensor ? work.k : 0);
     for (std::size_t f = 0; f < chains.fans.size(); ++f) {
-        const Chains::One& fan = chains.fans[f];
         // Places of the input may be anywhere in memory.
         if (f + ahead < chains.fans.size()) {
-            const std::size_t later = work.source(static_cast<std::size_t>(chains.fans[f + ahead].point));
-            __builtin_prefetch(&result.kappa[later], 1);
-            __builtin_prefetch(&result.density[later], 1);
+            __builtin_prefetch(&result.kappa[place(f + ahead)], 1);
+            __builtin_prefetch(&result.density[place(f + ahead)], 1);
         }
-        const auto i = static_cast<std::size_t>(fan.point), place = work.source(i);
-        corners.gather(work.cloud, i, chains.corners.data() + fan.begin, fan.size);
-        const Energy energy = fan_energy(corners, fan.closed, work.normals.data(), work.normal(i), align);
-        if (!(energy.area > 0)) continue;
-        result.kappa[place] = energy.kappa;
-        result.density[place] = energy.kappa / energy.area * corners.scale * corners.scale;
-        if (work.options.tensor)
-            store(result.tensor, place, fan_tensor(corners, fan.closed, work.normals.data(), work.normal(i), align));
+        const std::size_t l = f % fit_lanes;
+        if (l == 0) fan_energies(work.cloud, normals, chains, f, strips, energies);
+        if (!(energies.area[l] > 0)) continue;
+        const double scale = chains.fans[f].scale;
+        result.kappa[place(f)] = energies.kappa[l];
+        result.density[place(f)] = energies.kappa[l] / energies.area[l] * scale * scale;
+        if (work.options.tensor) measure_tensor(work, chains, chains.fans[f], normals.align, corners, result);
     }
 }
 
@@ -154,59 +105,69 @@ class BlockWork {
           last_(last),
           search_(work.cloud.tree, work.k),
           rows_(work.spanning_tree() ? 0 : batch * work.k),
-          around_(batch, Neighborhood(work.k)),
+          around_(batch / fit_lanes, LaneNeighborhoods(work.k)),
           normals_of_(work.options.method, work.options.degree, work.k),
-          fan_(work.k),
-          chain_(work.k) {}
+          fans_(fit_lanes, Fan(work.k)) {}
 
     void run(CloudCurvature& result) {
         Lap lap;
         for (std::size_t i = first_; i < last_; i += batch) {
             const std::size_t end = std::min(i + batch, last_);
             lap.add_to(block_.seconds_curvature);
-            find(i, end);
+            const std::int32_t* const rows = find(i, end);
             lap.add_to(block_.seconds_neighbors);
             if (!work_.given)
-                for (std::size_t j = i; j < end; j += fit_lanes) fit(i, j, std::min(j + fit_lanes, end));
+                for (std::size_t j = i; j < end; j += fit_lanes) fit(around_[(j - i) / fit_lanes], j);
             lap.add_to(block_.seconds_normals);
-            for (std::size_t j = i; j < end; ++j) build(around_[j - i], j);
+            for (std::size_t j = i; j < end; j += fit_lanes)
+                build(around_[(j - i) / fit_lanes], j, rows + (j - i) * work_.k);
         }
         measure(work_, ready_, result);
         lap.add_to(block_.seconds_curvature);
     }
 
   private:
-    /// The neighbourhoods of points [i, end), a leaf.
-    void find(std::size_t i, std::size_t end) {
+    /// The rows and neighbourhoods of points [i, end), a leaf.
+    const std::int32_t* find(std::size_t i, std::size_t end) {
         const bool keep = work_.spanning_tree();
         std::int32_t* rows = keep ? work_.neighbors.index.data() + i * work_.k : rows_.data();
         search_.find(i / leaf_points, rows, work_.k, i);
-        for (std::size_t j = i; j < end; ++j) around_[j - i].gather(work_.cloud, j, rows + (j - i) * work_.k, work_.k);
+        for (std::size_t j = i; j < end; j += fit_lanes)
+            around_[(j - i) / fit_lanes].gather(work_.cloud, j, std::min<std::size_t>(fit_lanes, end - j),
+                                                rows + (j - i) * work_.k, work_.k);
+        return rows;
     }
 
-    /// The normals of points [j, end) of the leaf that begins at i.
-    void fit(std::size_t i, std::size_t j, std::size_t end) {
+    /// The normals of the points from i on.
+    void fit(LaneNeighborhoods& around, std::size_t i) {
         NormalFit::Result results[fit_lanes];
-        normals_of_({around_.data() + (j - i), end - j}, {results, end - j});
-        for (std::size_t l = 0; l < end - j; ++l) {
-            store(work_.normals.data() + 3 * (j + l), results[l].normal);
+        normals_of_(around, results);
+        for (std::size_t l = 0; l < around.count(); ++l) {
+            store(work_.normals.data() + 3 * (i + l), results[l].normal);
             if (results[l].lowered) ++block_.lowered;
         }
     }
 
-    void build(const Neighborhood& around, std::size_t i) {
+    void build(LaneNeighborhoods& around, std::size_t i, const std::int32_t* rows) {
         // Looking up, whichever way the normal looks: a flip of all normals changes no bit of the sums.
-        build_fan(around, upward(work_.normal(i)), fan_);
-        if (fan_.triangles() == 0) return;
-        if (!fan_.closed) ++block_.boundary;
+        Vec3 normals[fit_lanes];
+        for (std::size_t l = 0; l < around.count(); ++l) normals[l] = upward(work_.normal(i + l));
+        build_fans(around, normals, fans_);
+        for (std::size_t l = 0; l < around.count(); ++l) keep(fans_[l], i + l, rows + l * work_.k, around.scale(l));
+    }
+
+    void keep(const Fan& fan, std::size_t i, const std::int32_t* row, double scale) {
+        if (fan.triangles() == 0) return;
+        if (!fan.closed) ++block_.boundary;
         bool inside = true;
-        for (std::size_t c = 0; c < fan_.corners; ++c) {
-            chain_[c] = around.index[static_cast<std::size_t>(fan_.chain[c])];
-            const auto corner = static_cast<std::size_t>(chain_[c]);
+        for (std::size_t c = 0; c < fan.corners; ++c) {
+            const auto corner = static_cast<std::size_t>(row[fan.chain[c]]);
             inside = inside && corner >= first_ && corner < last_;
         }
         const bool ready = work_.given || (inside && !work_.spanning_tree());
-        (ready ? ready_ : block_.waiting).add(i, fan_.closed, chain_.data(), fan_.corners);
+        const Chains::One one = {scale, static_cast<std::int32_t>(i), 0, static_cast<std::uint32_t>(fan.corners),
+                                 fan.closed};
+        (ready ? ready_ : block_.waiting).add(one, fan.chain.data(), row);
     }
 
     Work& work_;
@@ -214,10 +175,9 @@ class BlockWork {
     std::size_t first_, last_;
     NeighborRows search_;
     std::vector<std::int32_t> rows_;
-    std::vector<Neighborhood> around_;
+    std::vector<LaneNeighborhoods> around_;
     NormalFit normals_of_;
-    Fan fan_;
-    std::vector<std::int32_t> chain_;
+    std::vector<Fan> fans_;
     Chains ready_;
 };
 

@@ -16,13 +16,13 @@ CloudNormalsResult cloud_normals(Points points, const Neighbors& neighbors, cons
     result.normals.resize(3 * points.count);
     std::vector<std::size_t> undefined_in(block_count(points.count, grain)), lowered_in(undefined_in.size());
     for_blocks(points.count, grain, options.run, [&](std::size_t block, std::size_t i, std::size_t last) {
-        std::vector<Neighborhood> around(fit_lanes, Neighborhood(neighbors.k));
+        LaneNeighborhoods around(neighbors.k);
         NormalFit fit(options.method, options.degree, neighbors.k);
         NormalFit::Result results[fit_lanes];
         for (; i < last; i += fit_lanes) {
             const std::size_t count = std::min<std::size_t>(fit_lanes, last - i);
-            for (std::size_t j = 0; j < count; ++j) around[j].gather(points, i + j, neighbors[i + j], neighbors.k);
-            fit({around.data(), count}, {results, count});
+            around.gather(points, i, count, neighbors[i], neighbors.k);
+            fit(around, results);
             for (std::size_t j = 0; j < count; ++j) {
                 if (!finite(results[j].normal)) ++undefined_in[block];
                 if (results[j].lowered) ++lowered_in[block];

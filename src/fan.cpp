@@ -213,4 +213,21 @@ void build_fan(const Neighborhood& neighborhood, Vec3 normal, Fan& fan) {
     build_among(neighborhood, frame, padded(neighborhood.count), fan);
 }
 
+void build_fans(LaneNeighborhoods& around, std::span<const Vec3> normals, std::span<Fan> fans) {
+    LaneFans found = {};
+    if (around.in_lanes()) {
+        LaneValues normal[3] = {};
+        for (std::size_t l = 0; l < around.count(); ++l)
+            normal[0][l] = normals[l].x, normal[1][l] = normals[l].y, normal[2][l] = normals[l].z;
+        best_cloud_kernel().fans(around.patches(), around.counts(), normal, found);
+    }
+    for (std::size_t l = 0; l < around.count(); ++l) {
+        Fan& fan = fans[l];
+        fan.corners = static_cast<std::size_t>(found.corners[l]);
+        fan.closed = fan.corners > 0;
+        for (std::size_t c = 0; c < fan.corners; ++c) fan.chain[c] = found.chain[c][l];
+        if (fan.corners == 0) build_fan(around.alone(l), normals[l], fan);
+    }
+}
+
 }  // namespace gaussmap

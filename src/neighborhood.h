@@ -12,6 +12,21 @@
 
 namespace gaussmap {
 
+/// The power of two that brings a length to [1, 2), as far as there is one; 1 where the length is 0.
+inline double scale_of(double length) {
+    if (length == 0) return 1;
+    // Powers of two by their exponents: 1023 stands for 2⁰.
+    const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(length) >> 52);
+    return std::bit_cast<double>(static_cast<std::uint64_t>(2046 - std::clamp(exponent, 23, 2023)) << 52);
+}
+
+inline Vec3 position(const double* p) {
+    return load(p);
+}
+inline Vec3 position(Vec3 p) {
+    return p;
+}
+
 /// Differences from a point, scaled by a power of two (so exactly) to a size near 1: squares and fourth powers of them
 /// neither overflow nor underflow whatever the unit of length, and a large common offset costs nothing.
 /// A coordinate an array, filled up with zeros to whole groups of lanes.
@@ -44,16 +59,9 @@ struct Neighborhood {
     }
 
   private:
-    static Vec3 position(const double* p) { return load(p); }
-    static Vec3 position(Vec3 p) { return p; }
-
     void rescale(double largest) {
-        scale = 1;
         if (!std::isfinite(largest)) count = 0;
-        if (largest == 0 || count == 0) return;
-        // Powers of two by their exponents: 1023 stands for 2⁰.
-        const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52);
-        scale = std::bit_cast<double>(static_cast<std::uint64_t>(2046 - std::clamp(exponent, 23, 2023)) << 52);
+        scale = count > 0 ? scale_of(largest) : 1;
         for (std::size_t j = 0; j < count; ++j) x[j] *= scale, y[j] *= scale, z[j] *= scale;
     }
 };

@@ -129,32 +129,39 @@ bool NormalFit::fit_alone(int degree, const Neighborhood& neighborhood, const Fr
     }
 }
 
+/// Smallest principal directions.
+void NormalFit::find_principal(LaneNeighborhoods& around, Result (&results)[fit_lanes]) const {
+    const bool weighted = method_ == CloudNormals::weighted_pca;
+    LaneNormals normals = {};
+    if (around.in_lanes()) best_cloud_kernel().principal(around.patches(), around.counts(), weighted, normals);
+    for (std::size_t l = 0; l < around.count(); ++l)
+        results[l] = {normals.found[l] ? Vec3{normals.n[0][l], normals.n[1][l], normals.n[2][l]}
+                                       : principal_normal(around.alone(l), weighted)};
+}
+
 /// Fits over the frames of some lanes, where a kernel has the degree. The others may yet be determined: the condition
 /// of normal equations is that of the fit squared.
-void NormalFit::fit_in_lanes(int degree, std::span<const Neighborhood> around, const Group& group) {
+void NormalFit::fit_in_lanes(int degree, LaneNeighborhoods& around, const Group& group) {
     std::fill_n(fields_.determined, fit_lanes, false);
-    if (degree != 2 && degree != 4) return;
+    if (!around.in_lanes() || (degree != 2 && degree != 4)) return;
     const LaneFit& fit = degree == 2 ? best_lane_fit().quadric : best_lane_fit().quartic;
-    const auto unknowns = static_cast<std::size_t>(monomials(degree)) - 1;
     LaneRange range = {{}, {}, Chart::monge, false};
-    for (std::size_t l = 0; l < around.size(); ++l) {
-        const Neighborhood& one = around[l];
-        if (!group.wanted[l] || one.count < unknowns || one.count > most_fitted) continue;
-        range.last[l] = static_cast<int>(one.count);
-        patches_.see(static_cast<int>(l), group.frame[l], 1);
-        for (std::size_t j = 0; j < one.count; ++j)
-            patches_.d[j][0][l] = one.x[j], patches_.d[j][1][l] = one.y[j], patches_.d[j][2][l] = one.z[j];
+    for (std::size_t l = 0; l < around.count(); ++l) {
+        if (!group.wanted[l] || around.counts()[l] < monomials(degree) - 1) continue;
+        range.last[l] = around.counts()[l];
+        around.patches().see(static_cast<int>(l), group.frame[l], 1);
     }
-    fit.collect(patches_, range, true, sums_);
+    fit.collect(around.patches(), range, true, sums_);
     fit.solve(sums_, false, false, fields_);
 }
 
-void NormalFit::operator()(std::span<const Neighborhood> around, std::span<Result> results) {
+void NormalFit::operator()(LaneNeighborhoods& around, Result (&results)[fit_lanes]) {
+    find_principal(around, results);
+    if (method_ != CloudNormals::jet) return;
     Group group = {};
     std::size_t wanted = 0;
-    for (std::size_t l = 0; l < around.size(); ++l) {
-        results[l] = {principal_normal(around[l], method_ == CloudNormals::weighted_pca)};
-        if (method_ != CloudNormals::jet || !finite(results[l].normal)) continue;
+    for (std::size_t l = 0; l < around.count(); ++l) {
+        if (!finite(results[l].normal)) continue;
         group.frame[l] = frame_about(results[l].normal);
         group.wanted[l] = results[l].lowered = true;
         ++wanted;
@@ -162,11 +169,12 @@ void NormalFit::operator()(std::span<const Neighborhood> around, std::span<Resul
     // The highest degree up to the one asked for that the neighbours determine.
     for (int degree = degree_; degree > 0 && wanted > 0; --degree) {
         fit_in_lanes(degree, around, group);
-        for (std::size_t l = 0; l < around.size(); ++l) {
+        for (std::size_t l = 0; l < around.count(); ++l) {
             if (!group.wanted[l]) continue;
             const Frame& frame = group.frame[l];
             Vec3 normal = unit(frame.n - fields_.c[1][l] * frame.u - fields_.c[2][l] * frame.v);
-            if (!(fields_.determined[l] && finite(normal)) && !fit_alone(degree, around[l], frame, normal)) continue;
+            if (!(fields_.determined[l] && finite(normal)) && !fit_alone(degree, around.alone(l), frame, normal))
+                continue;
             results[l] = {upward(normal), degree < degree_};
             group.wanted[l] = false;
             --wanted;

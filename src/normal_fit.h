@@ -1,15 +1,14 @@
 // The normal of one point of a cloud, fitted to its neighbours.
 #pragma once
 
-#include <span>
 #include <tuple>
 #include <vector>
 
 #include "frame.h"
 #include "gaussmap/normals.h"
 #include "lane_fits.h"
+#include "lane_neighborhoods.h"
 #include "least_squares.h"
-#include "neighborhood.h"
 
 namespace gaussmap {
 
@@ -46,20 +45,20 @@ class NormalFit {
         bool lowered = false;  ///< the jet took a lower degree than asked for
     };
     /// Of up to `fit_lanes` points, which takes as long as of one; the same bits for one as for more.
-    void operator()(std::span<const Neighborhood> around, std::span<Result> results);
+    void operator()(LaneNeighborhoods& around, Result (&results)[fit_lanes]);
 
   private:
     struct Group {
         Frame frame[fit_lanes];
         bool wanted[fit_lanes];
     };
-    void fit_in_lanes(int degree, std::span<const Neighborhood> around, const Group& group);
+    void find_principal(LaneNeighborhoods& around, Result (&results)[fit_lanes]) const;
+    void fit_in_lanes(int degree, LaneNeighborhoods& around, const Group& group);
     bool fit_alone(int degree, const Neighborhood& neighborhood, const Frame& frame, Vec3& normal);
 
     CloudNormals method_;
     int degree_;
     std::tuple<Jet<1>, Jet<2>, Jet<3>, Jet<4>> jets_;
-    LanePatches patches_;
     LaneSums sums_;
     LaneFields fields_ = {};
 };

@@ -48,14 +48,22 @@ ElementNormals fit_normals(const Elements& elements, int k, CloudNormals method,
     normals.align = true;
     normals.normal.resize(elements.count);
     normals.lowered.resize(elements.count);
-    for_neighborhoods(elements, k, run, [&](std::size_t /*block*/) {
-        return [&, fit = NormalFit(method, degree, static_cast<std::size_t>(k))](std::size_t i,
-                                                                                 const Neighborhood& around) mutable {
-            NormalFit::Result result;
-            fit({&around, 1}, {&result, 1});
-            normals.normal[i] = result.normal;
-            normals.lowered[i] = result.lowered ? 1 : 0;
-        };
+    const auto stride = static_cast<std::size_t>(k);
+    for_blocks(elements.count, Elements::block, run, [&](std::size_t, std::size_t first, std::size_t last) {
+        std::vector<std::int32_t> rows((last - first) * stride);
+        elements.neighbors(first, last, k, rows.data());
+        LaneNeighborhoods around(stride);
+        NormalFit fit(method, degree, stride);
+        NormalFit::Result results[fit_lanes];
+        for (std::size_t i = first; i < last; i += fit_lanes) {
+            const std::size_t count = std::min<std::size_t>(fit_lanes, last - i);
+            around.gather(elements, i, count, rows.data() + (i - first) * stride, stride);
+            fit(around, results);
+            for (std::size_t l = 0; l < count; ++l) {
+                normals.normal[i + l] = results[l].normal;
+                normals.lowered[i + l] = results[l].lowered ? 1 : 0;
+            }
+        }
     });
     return normals;
 }

@@ -29,12 +29,12 @@ GAUSSMAP_INLINE void store(double* p, Real a) {
 GAUSSMAP_INLINE Real all(double a) {
     return Real{} + a;
 }
-GAUSSMAP_INLINE Real select(Mask mask, Real yes, Real no) {
-    return (Real)((mask & (Mask)yes) | (~mask & (Mask)no));
-}
 
 // What compilers do not make one instruction of.
 #if defined __AVX2__
+GAUSSMAP_INLINE Real select(Mask mask, Real yes, Real no) {
+    return (Real)_mm256_blendv_pd((__m256d)no, (__m256d)yes, (__m256d)mask);
+}
 GAUSSMAP_INLINE Real maximum(Real a, Real b) {
     return (Real)_mm256_max_pd((__m256d)a, (__m256d)b);
 }
@@ -44,7 +44,15 @@ GAUSSMAP_INLINE Real minimum(Real a, Real b) {
 GAUSSMAP_INLINE Real square_root(Real a) {
     return (Real)_mm256_sqrt_pd((__m256d)a);
 }
-#elif defined __SSE2__
+/// A bit a lane.
+GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
+    return static_cast<unsigned>(_mm256_movemask_pd((__m256d)mask));
+}
+#else
+GAUSSMAP_INLINE Real select(Mask mask, Real yes, Real no) {
+    return (Real)((mask & (Mask)yes) | (~mask & (Mask)no));
+}
+#ifdef __SSE2__
 GAUSSMAP_INLINE Real maximum(Real a, Real b) {
     return (Real)_mm_max_pd((__m128d)a, (__m128d)b);
 }
@@ -53,6 +61,9 @@ GAUSSMAP_INLINE Real minimum(Real a, Real b) {
 }
 GAUSSMAP_INLINE Real square_root(Real a) {
     return (Real)_mm_sqrt_pd((__m128d)a);
+}
+GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
+    return static_cast<unsigned>(_mm_movemask_pd((__m128d)mask));
 }
 #else
 GAUSSMAP_INLINE Real maximum(Real a, Real b) {
@@ -66,6 +77,12 @@ GAUSSMAP_INLINE Real square_root(Real a) {
     for (int l = 0; l < lanes; ++l) root[l] = __builtin_sqrt(a[l]);
     return root;
 }
+GAUSSMAP_INLINE unsigned bits_of(Mask mask) {
+    unsigned bits = 0;
+    for (int l = 0; l < lanes; ++l) bits |= static_cast<unsigned>(mask[l] & 1) << l;
+    return bits;
+}
+#endif
 #endif
 
 }  // namespace

@@ -1,9 +1,9 @@
-// Speed and memory of clouds on a torus, its points in random order, k = 20: neighbours alone, and total curvature end
-// to end with PCA normals, quadratic and quartic jets, on one thread and on two, against a program built like the
-// author's and PCL. All in one run, interleaved, results checked against the truth first.
+// Speed and memory of clouds on a torus, its points in random order: neighbours alone, and total curvature end to end
+// with PCA normals, quadratic and quartic jets, on one thread and on two, against a program built like the author's and
+// PCL. All in one run, interleaved, results checked against the truth first.
 //
-//   cloud_speed [points [repetitions]]   speed; a million points, five repetitions
-//   cloud_speed memory [points]          peak memory beyond the input; ten million points
+//   cloud_speed [points [repetitions [k]]]   speed; a million points, five repetitions, 20 neighbours
+//   cloud_speed memory [points [k]]          peak memory beyond the input; ten million points
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,8 +25,6 @@
 using namespace gaussmap;
 
 namespace {
-
-constexpr int k = 20;
 
 struct Cloud {
     std::vector<double> points, density;
@@ -75,7 +73,7 @@ struct Path {
     std::function<std::vector<double>(Points, int threads)> run;
 };
 
-Path path(const char* name, CloudNormals method, int degree, double limit) {
+Path path(const char* name, int k, CloudNormals method, int degree, double limit) {
     return {name, limit, [=](Points points, int threads) {
                 CloudCurvatureOptions options;
                 options.estimator = Estimator::dirichlet;
@@ -87,15 +85,15 @@ Path path(const char* name, CloudNormals method, int degree, double limit) {
             }};
 }
 
-std::vector<Path> our_paths() {
+std::vector<Path> our_paths(int k) {
     return {{"neighbours alone", 0,
-             [](Points points, int threads) {
+             [k](Points points, int threads) {
                  nearest_neighbors(points, k, {threads, {}});
                  return std::vector<double>();
              }},
-            path("PCA + fan", CloudNormals::pca, 1, 0.4),
-            path("quadratic jets + fan", CloudNormals::jet, 2, 0.01),
-            path("quartic jets + fan", CloudNormals::jet, 4, 0.01),
+            path("PCA + fan", k, CloudNormals::pca, 1, 0.4),
+            path("quadratic jets + fan", k, CloudNormals::jet, 2, 0.01),
+            path("quartic jets + fan", k, CloudNormals::jet, 4, 0.01),
             {"auto", 0.001, [](Points points, int threads) {
                  CloudCurvatureOptions options;
                  options.run.threads = threads;
@@ -144,21 +142,21 @@ void print(const std::vector<Row>& rows) {
                     peer);
 }
 
-void measure_speed(std::size_t count, int repetitions) {
+void measure_speed(std::size_t count, int repetitions, int k) {
     const Cloud cloud = torus_cloud(count), small = torus_cloud(std::min<std::size_t>(count, 20000)),
                 middle = torus_cloud(std::min<std::size_t>(count, 200000));
-    const std::vector<Path> ours = our_paths();
+    const std::vector<Path> ours = our_paths(k);
     std::vector<Path> peers;
     std::vector<Row> rows;
     for (const Path& one : ours)
         for (const int threads : {1, 2}) rows.push_back({&one, &cloud, threads});
 #ifdef BENCH_TEXTBOOK
-    peers.push_back({"built like the author's", 0.4, [](Points points, int) { return textbook_cloud(points, k); }});
+    peers.push_back({"built like the author's", 0.4, [k](Points points, int) { return textbook_cloud(points, k); }});
 #else
     std::printf("CGAL is not installed: no program built like the author's\n");
 #endif
 #ifdef BENCH_PCL
-    peers.push_back({"PCL", 1, [](Points points, int) { return pcl_cloud(points, k); }});
+    peers.push_back({"PCL", 1, [k](Points points, int) { return pcl_cloud(points, k); }});
 #else
     std::printf("PCL is not installed: no row\n");
 #endif
@@ -186,11 +184,11 @@ double status(const char* key) {
 }
 
 /// Each way in a process of its own: the peak of its resident memory above what is resident when it begins, the input.
-void measure_memory(std::size_t count) {
+void measure_memory(std::size_t count, int k) {
     const Cloud cloud = torus_cloud(count);
     std::printf("%zu points: peak memory beyond the input, bytes a point\n", cloud.count());
-    std::vector<Path> ways = our_paths();
-    ways.push_back({"the same, spanning tree", 0, [](Points points, int threads) {
+    std::vector<Path> ways = our_paths(k);
+    ways.push_back({"the same, spanning tree", 0, [k](Points points, int threads) {
                         CloudCurvatureOptions options;
                         options.estimator = Estimator::dirichlet;
                         options.k = k;
@@ -223,10 +221,12 @@ void measure_memory(std::size_t count) {
 int main(int argc, char** argv) {
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     const bool memory = argc > 1 && std::string(argv[1]) == "memory";
-    if (memory) {
-        measure_memory(argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 10000000);
-    } else {
-        measure_speed(argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000, argc > 2 ? std::atoi(argv[2]) : 5);
-    }
+    const auto number = [&](int place, std::size_t otherwise) {
+        return argc > place ? std::strtoull(argv[place], nullptr, 10) : otherwise;
+    };
+    if (memory)
+        measure_memory(number(2, 10000000), static_cast<int>(number(3, 20)));
+    else
+        measure_speed(number(1, 1000000), static_cast<int>(number(2, 5)), static_cast<int>(number(3, 20)));
     return 0;
 }
