@@ -42,6 +42,8 @@ OURS = {
 
 def run(command, folder=None):
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False, cwd=folder)
+    if done.returncode:
+        print(f"{' '.join(map(str, command))}: {done.returncode}\n{done.stderr[-500:]}", file=sys.stderr, flush=True)
     return done.stdout if done.returncode == 0 else ""
 
 
