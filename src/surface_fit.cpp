@@ -178,7 +178,8 @@ VertexSamples vertex_samples(const DecimationInput& in, const AreaSamples& centr
     out.point = in.positions;
     out.face.assign(out.point.size(), -1);
     out.squared_distance.assign(out.point.size(), HUGE_VAL);
-    for (std::size_t c = 0; c < in.corners.size(); ++c) out.face[in.corners[c]] = centres.face[c / 3];
+    for (std::size_t c = 0; c < in.corners.size(); ++c)
+        if (const std::int32_t f = centres.face[c / 3]; f >= 0) out.face[in.corners[c]] = f;
     for_blocks(out.point.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t end) {
         for (; i < end; ++i) {
             if (out.face[i] < 0) continue;

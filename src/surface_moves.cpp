@@ -14,9 +14,9 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1 << 9;
-constexpr double pull = 5e-4;  ///< towards no move, where the samples leave a direction free
-constexpr double astray = 5;   ///< how much more than the fine surface a vertex that is far from it counts
-constexpr int steps = 3;       ///< towards the best moves of all vertices together
+constexpr double pull = 5e-4;     ///< towards no move, where the samples leave a direction free
+constexpr double astray = 5;      ///< how much more than the fine surface a vertex that is far from it counts
+constexpr int squares_steps = 3;  ///< towards the best moves of all vertices together; one where weights follow moves
 
 /// What planes ask of a move x: that xᵀ A x − 2 b·x be small.
 class Planes {
@@ -187,6 +187,7 @@ std::vector<Vec3> best_moves(const RingMesh& mesh, const std::vector<Planes>& as
                              const FitNorm& norm, const Execution& run) {
     constexpr double least = 0.25, first_step = 2 / (least + 1), reach = (1 - least) / (1 + least);
     std::vector<Vec3> x(asked.size()), change(asked.size());
+    const int steps = norm.power == 2 ? squares_steps : 1;
     double relaxed = 1;
     for (int step = 0; step < steps; ++step) {
         if (step > 0) relaxed = 1 / (1 - reach * reach * relaxed / (step == 1 ? 2 : 4));

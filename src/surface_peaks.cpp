@@ -14,7 +14,7 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1 << 9;
-constexpr double part = 0.64;  ///< of the greatest height, that all are brought below before others are looked for
+constexpr double part = 0.5;  ///< of the greatest height: what is higher is brought down before less is looked at
 
 /// Heights are squared distances. One that is no more than `low` may be given as any that is not either.
 class Peaks {
@@ -84,8 +84,8 @@ class Peaks {
                 const auto f = static_cast<std::int32_t>(i);
                 height_[f] = there(f);
                 const std::int32_t* v = &mesh_.vertex[3 * f];
-                // Below what lies over it and is near, a face is near too.
-                if (std::max({2 * height_[f], apart[v[0]], apart[v[1]], apart[v[2]]}) > low_ || !covered(f))
+                // Below what lies over it and is near, a face is near too: less than half as far, and little is missed.
+                if (std::max({4 * height_[f], apart[v[0]], apart[v[1]], apart[v[2]]}) > low_ || !covered(f))
                     height_[f] = std::max(height_[f], back(f, corners(f), HUGE_VAL).squared);
             }
         });
@@ -94,7 +94,7 @@ class Peaks {
         return !queue_.empty();
     }
 
-    /// From the vertices to the fine surface.
+    /// The heights of the vertices alone, exact where they come to `low_` of all.
     std::vector<double> corners_apart(const Execution& run) const {
         std::vector<double> apart(mesh_.first.size());
         for_blocks(apart.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t v, std::size_t end) {
@@ -106,6 +106,7 @@ class Peaks {
         });
         return apart;
     }
+
     /// Is there about as much of the fine surface over a face as it is large?
     bool covered(std::int32_t f) const {
         double area = 0;

@@ -7,7 +7,7 @@
 namespace gaussmap {
 
 /// While that works, move a vertex of the face on which the greatest distance of all is, in either direction, so that
-/// the greatest distance around the vertex falls; until none of those can be lowered that are greatest.
+/// the greatest distance around the vertex falls; until that is of no use.
 /// \param centres   as they were fitted.
 /// \param vertices  of the fine surface; they are kept up to date.
 /// \param fine      the surface that the samples are of.
