@@ -10,6 +10,8 @@
 namespace gaussmap {
 namespace {
 
+constexpr std::size_t grain = 3 << 9;  ///< corners
+
 /// 2 area / Σ edge²: 0.289 equilateral, 0 degenerate.
 double shape_of(Vec3 a, Vec3 b, Vec3 c) {
     const double l = squared(b - a) + squared(c - b) + squared(a - c);
@@ -58,6 +60,22 @@ Crossing crossing_of(const Quad& q) {
     return {along, across * v - w - along * u};
 }
 
+/// The twin of each corner whose side is not tagged, −1 without one.
+std::vector<std::int32_t> twins_of(const RingMesh& mesh, const Execution& run) {
+    std::vector<std::int32_t> twins(mesh.vertex.size(), -1);
+    for_blocks(twins.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t c, std::size_t end) {
+        for (; c < end; ++c) {
+            const auto corner = static_cast<std::int32_t>(c);
+            // Looked for from one of the two, which writes both: no slot is written twice.
+            if (mesh.vertex[RingMesh::after(corner)] > mesh.vertex[RingMesh::before(corner)] || mesh.tagged(corner))
+                continue;
+            twins[c] = mesh.twin(corner);
+            if (twins[c] >= 0) twins[twins[c]] = corner;
+        }
+    });
+    return twins;
+}
+
 /// What is known of a side from the samples of one of its faces.
 struct Outlook {
     double cost = 0;         ///< of the face's samples
@@ -69,14 +87,14 @@ struct Outlook {
 /// quad's sides, linear in between. With φ the tent of height 1 and r the residuals, Σ A r² falls by
 /// 2 g Σ A φ r − g² Σ A φ².
 std::array<Outlook, 3> outlooks(const RingMesh& mesh, const AreaSamples& samples, const FaceSamples& rows,
-                                std::int32_t f, const FitNorm& norm) {
+                                const std::vector<std::int32_t>& twins, std::int32_t f, const FitNorm& norm) {
     const std::int32_t* v = &mesh.vertex[3 * f];
     const FaceFrame frame(mesh.position[v[0]], mesh.position[v[1]], mesh.position[v[2]]);
     std::array<Outlook, 3> out;
     std::array<double, 3> per_from{}, per_to{}, gap{}, linear{}, square{};
     for (std::int32_t k = 0; k < 3; ++k) {
         const std::int32_t corner = 3 * f + k;
-        const std::int32_t twin = mesh.tagged(corner) ? -1 : mesh.twin(corner);
+        const std::int32_t twin = twins[corner];
         if (twin < 0) continue;
         const Crossing crossing = crossing_of(quad_of(mesh, corner, twin));
         if (!(crossing.along > 0 && crossing.along < 1)) continue;
@@ -135,15 +153,16 @@ bool wants_flip(const RingMesh& mesh, const AreaSamples& samples, const FaceSamp
 
 std::size_t flip_sides(RingMesh& mesh, AreaSamples& samples, const FitNorm& norm, const Execution& run) {
     const FaceSamples rows = by_face(samples, mesh.tags.size());
+    const std::vector<std::int32_t> twins = twins_of(mesh, run);
     std::vector<Outlook> outlook(mesh.vertex.size());
-    for_blocks(mesh.tags.size(), 1 << 9, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
+    for_blocks(mesh.tags.size(), grain / 3, {run.threads, {}}, [&](std::size_t, std::size_t f, std::size_t end) {
         for (; f < end; ++f) {
-            const auto of_face = outlooks(mesh, samples, rows, static_cast<std::int32_t>(f), norm);
+            const auto of_face = outlooks(mesh, samples, rows, twins, static_cast<std::int32_t>(f), norm);
             std::copy(of_face.begin(), of_face.end(), &outlook[3 * f]);
         }
     });
     std::vector<std::uint8_t> wanted(mesh.vertex.size());
-    for_blocks(wanted.size(), 3 << 9, {run.threads, {}}, [&](std::size_t, std::size_t c, std::size_t end) {
+    for_blocks(wanted.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t c, std::size_t end) {
         for (; c < end; ++c) wanted[c] = wants_flip(mesh, samples, rows, outlook, static_cast<std::int32_t>(c), norm);
     });
     std::vector<bool> done(mesh.tags.size(), false);

@@ -1,7 +1,9 @@
 // What is done for group points side by side: against the same done for one, and the same bits from every instruction
 // set.
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -261,6 +263,11 @@ TEST(CloudKernel, LargeFans) {
 }
 
 #ifdef __x86_64__
+template <class T>
+std::array<std::byte, sizeof(T)> bytes_of(const T& value) {
+    return std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+}
+
 TEST(CloudKernel, SameBitsFromEveryInstructionSet) {
     if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this machine has no AVX2";
     const CloudKernel &one = cloud_kernel_baseline, &other = cloud_kernel_avx2;
@@ -273,7 +280,7 @@ TEST(CloudKernel, SameBitsFromEveryInstructionSet) {
         for (const bool weighted : {false, true}) {
             one.principal(patches, counts, weighted, normals[0]);
             other.principal(patches, counts, weighted, normals[1]);
-            ASSERT_EQ(std::memcmp(&normals[0], &normals[1], sizeof normals[0]), 0);
+            ASSERT_EQ(bytes_of(normals[0]), bytes_of(normals[1]));
         }
         LaneFans fans[2] = {};
         one.fans(patches, counts, normals[0].n, fans[0]);
@@ -294,7 +301,7 @@ TEST(CloudKernel, SameBitsFromEveryInstructionSet) {
         LaneEnergies energies[2] = {};
         one.energies(strips, trial % 3 == 0, energies[0]);
         other.energies(strips, trial % 3 == 0, energies[1]);
-        ASSERT_EQ(std::memcmp(&energies[0], &energies[1], sizeof energies[0]), 0);
+        ASSERT_EQ(bytes_of(energies[0]), bytes_of(energies[1]));
     }
 }
 #endif
