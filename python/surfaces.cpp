@@ -82,10 +82,10 @@ Record decimate(const PointArray& vertices, const FaceArray& faces, std::size_t 
 }
 
 /// (m, 3) of the values of corners, (m, 3 × components), or None where there is no seam.
-nb::object corner_seams(const FaceArray& faces, const CornerValues& values) {
+nb::any corner_seams(const FaceArray& faces, const CornerValues& values) {
     auto seams =
         gaussmap::corner_seams(triangles(faces), {values.data(), values.data() + values.size()}, values.shape(1) / 3);
-    return seams.empty() ? nb::none() : nb::object(array(std::move(seams), 3));
+    return seams.empty() ? nb::steal<nb::any>(nb::none().release()) : array(std::move(seams), 3);
 }
 
 nb::tuple deviation(const gaussmap::Deviation& way) {

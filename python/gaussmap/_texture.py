@@ -20,7 +20,8 @@ def of_corners(face_attributes: dict[str, AnyArray]) -> AnyArray | None:
 
 def seams(faces: Ints, texture: AnyArray) -> npt.NDArray[np.uint8] | None:
     """(m, 3), 1 where the side opposite to the corner has other coordinates in its next face; None where there is none."""
-    return _gaussmap.corner_seams(faces, np.ascontiguousarray(texture, np.float64))
+    found: npt.NDArray[np.uint8] | None = _gaussmap.corner_seams(faces, np.ascontiguousarray(texture, np.float64))
+    return found
 
 
 def interpolated(face: Ints, weights: Floats, texture: AnyArray) -> AnyArray:
