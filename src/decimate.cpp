@@ -95,7 +95,7 @@ std::vector<std::int32_t> collapse(RingMesh& mesh, const DecimationInput& in, co
     // Weights show in the order of collapses: the methods of the paper keep near to it, the fit levels what `best`
     // loses.
     if (options.method != DecimationMethod::best)
-        passes.share = 0.03;
+        passes.share = 0.02;
     else if (options.fast)
         passes.share = 0.2;
     passes.border_weight = options.preserve_boundary ? 1000 : 1;
