@@ -33,7 +33,7 @@ OURS = {
     "best, objective max": ["--objective", "max"],
     "fast": ["--fast"],
 }
-WEIGHTED = {"seed/bunny.ply", "seed/cow.ply", "classic/armadillo.off"}  # the paper's, where weights are tried
+WEIGHTED = {"bunny", "cow", "armadillo"}  # the paper's, where weights are tried
 WEIGHTED_RATIOS = [0.1, 0.05, 0.02]
 
 
@@ -46,6 +46,11 @@ def run(command, folder=None):
 
 def geometric_mean(values):
     return math.exp(sum(map(math.log, values)) / len(values)) if values else math.nan
+
+
+def means_of(rows):
+    """The geometric mean of each column."""
+    return tuple(geometric_mean(axis) for axis in zip(*rows))
 
 
 def moved(path, out, seed):
@@ -137,7 +142,7 @@ class Bench:
                     if int(asked) == target and 0 < int(made) <= 1.02 * target + 2:
                         found.setdefault(peer, []).append((*self.judge(mesh, Path(file)), max(float(seconds), 1e-4)))
             # Who fails on one of the meshes has no result.
-            means = {peer: tuple(geometric_mean(axis) for axis in zip(*values))
+            means = {peer: means_of(values)
                      for peer, values in found.items() if len(values) == len(meshes)}
             yield meshes, ratio, target, means
 
@@ -156,7 +161,7 @@ def table_of_mode(bench, mode, options, cells):
     for meshes, ratio, target, results in cells:
         if not results:
             continue
-        own = [geometric_mean(axis) for axis in zip(*(bench.ours(mesh, target, options) for mesh in meshes))]
+        own = means_of(bench.ours(mesh, target, options) for mesh in meshes)
         row = f"| {meshes[0].stem} | {100 * ratio:g} "
         exact = min(rms for rms, *_ in results.values()) < 0.05  # a flat or subdivided mesh: a ratio of rounding errors
         for axis in range(2):
@@ -179,9 +184,9 @@ def table_of_weights(bench, cells):
     for method in ("edge", "qem"):
         ratios = ([], [])
         for meshes, ratio, target, _ in cells:
-            if meshes[0].stem not in {Path(name).stem for name in WEIGHTED} or ratio not in WEIGHTED_RATIOS:
+            if meshes[0].stem not in WEIGHTED or ratio not in WEIGHTED_RATIOS:
                 continue
-            plain, weighted = ([geometric_mean(axis) for axis in zip(*(bench.ours(mesh, target, options) for mesh in meshes))]
+            plain, weighted = (means_of(bench.ours(mesh, target, options) for mesh in meshes)
                                for options in (["--method", method, "--weight", "none"], ["--method", method]))
             row = f"| {method} | {meshes[0].stem} | {100 * ratio:g} "
             for axis in range(2):

@@ -109,8 +109,8 @@ class Passes {
                                lanes_.face_planes(mesh_.position.data(), faces[begin], end - begin, corners[0][0]);
                            });
         for_stale([&](std::int32_t v, auto& sectors) {
-            if (mesh_.kind[v] != VertexKind::free) mesh_.gather(v, sectors), add_sides(shape_[v], v, sectors);
-            shape_[v] *= weight_[v];
+            if (mesh_.kind[v] != VertexKind::free) mesh_.gather(v, sectors);
+            finish_shape(v, sectors);
         });
     }
 
@@ -119,9 +119,13 @@ class Passes {
         for_stale([&](std::int32_t v, auto& sectors) {
             mesh_.gather(v, sectors);
             shape_[v] = lanes_.planes(mesh_.position.data(), sectors.begin(), sectors.size(), mesh_.position[v]);
-            if (mesh_.kind[v] != VertexKind::free) add_sides(shape_[v], v, sectors);
-            shape_[v] *= weight_[v];
+            finish_shape(v, sectors);
         });
+    }
+
+    void finish_shape(std::int32_t v, const RingMesh::Sectors& sectors) {
+        if (mesh_.kind[v] != VertexKind::free) add_sides(shape_[v], v, sectors);
+        shape_[v] *= weight_[v];
     }
 
     void find_keys() {

@@ -100,6 +100,11 @@ void RingMesh::look(std::int32_t a, std::int32_t b, Edge& edge) const {
     });
 }
 
+RingMesh::SharedFace RingMesh::shared_face(const Edge& edge, const Sector& s) {
+    const std::int32_t n = after(s.corner), q = before(s.corner);
+    return s.from == edge.b ? SharedFace{n, q} : SharedFace{q, n};
+}
+
 bool RingMesh::closed_fan(std::int32_t v, std::vector<std::int32_t>& follower) {
     // From neighbour to neighbour: each comes after v in one face, and the way leads through all of them.
     const std::uint32_t mark = new_marks(1);
@@ -255,8 +260,7 @@ Refusal RingMesh::refusal(const Edge& edge, bool allow_topology) {
     for (const Sector& s : edge.of_b) count_common(s.from), count_common(s.to);
     for (const Sector& s : edge.shared) count_common(s.from == edge.b ? s.to : s.from);
     for (const Sector& s : edge.shared) {
-        const std::int32_t n = after(s.corner), p = before(s.corner);
-        const std::int32_t of_b = s.from == edge.b ? n : p, third = of_b == n ? p : n;
+        const auto [of_b, third] = shared_face(edge, s);
         along |= tagged(third);
         // The third vertex keeps a face, and two borders never become one.
         last |= next(third) == third || (tagged(s.corner) && tagged(of_b));
@@ -285,29 +289,22 @@ Refusal RingMesh::refusal(const Edge& edge, bool allow_topology) {
     return Refusal::none;
 }
 
-bool RingMesh::folds(const Edge& edge, Vec3 p) const {
-    const auto turns = [&](std::int32_t v, const Sectors& sectors) {
-        const Vec3 at = position[v];
-        if (!collapse_lanes().may_spoil(position.data(), sectors.begin(), sectors.size(), at, p)) return false;
-        return std::any_of(sectors.begin(), sectors.end(), [&](const Sector& s) {
-            const Vec3 from = position[s.from], to = position[s.to];
-            return spoils(from - at, to - at, from - p, to - p);
-        });
-    };
-    return turns(edge.a, edge.of_a) || turns(edge.b, edge.of_b);
+bool RingMesh::turns(std::int32_t v, const Sectors& sectors, Vec3 p) const {
+    const Vec3 at = position[v];
+    if (!collapse_lanes().may_spoil(position.data(), sectors.begin(), sectors.size(), at, p)) return false;
+    return std::any_of(sectors.begin(), sectors.end(), [&](const Sector& s) {
+        const Vec3 from = position[s.from], to = position[s.to];
+        return spoils(from - at, to - at, from - p, to - p);
+    });
 }
 
-bool RingMesh::folds(std::int32_t v, Vec3 p) const {
-    const std::int32_t start = first[v];
-    std::int32_t c = start;
-    if (start < 0) return false;
-    const Vec3 at = position[v];
-    do {
-        const Vec3 from = position[vertex[after(c)]], to = position[vertex[before(c)]];
-        if (spoils(from - at, to - at, from - p, to - p)) return true;
-        c = next_[c];
-    } while (c != start);
-    return false;
+bool RingMesh::folds(const Edge& edge, Vec3 p) const {
+    return turns(edge.a, edge.of_a, p) || turns(edge.b, edge.of_b, p);
+}
+
+bool RingMesh::folds(std::int32_t v, Vec3 p) {
+    gather(v, sectors_);
+    return turns(v, sectors_, p);
 }
 
 void RingMesh::collapse(const Edge& edge, Vec3 p) {
@@ -324,11 +321,10 @@ void RingMesh::collapse(const Edge& edge, Vec3 p) {
     for (const Sector& s : edge.of_a) keep(s.corner);
     for (const Sector& s : edge.of_b) keep(s.corner);
     for (const Sector& s : edge.shared) {
-        const std::int32_t n = after(s.corner), q = before(s.corner);
-        const std::int32_t of_b = s.from == b ? n : q, third = of_b == n ? q : n;
+        const auto [of_b, third] = shared_face(edge, s);
         if (tags_matter && (tagged(s.corner) || tagged(of_b)) && widen < 8) widened[widen++] = vertex[third];
         unlink(third);
-        vertex[s.corner] = vertex[n] = vertex[q] = -1;
+        vertex[s.corner] = vertex[of_b] = vertex[third] = -1;
         --faces_;
     }
     if (tail >= 0) next_[tail] = head;

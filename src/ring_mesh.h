@@ -109,7 +109,7 @@ class RingMesh {
     /// b joins a at p; the faces on both go.
     void collapse(const Edge& edge, Vec3 p);
     /// Would a face of v turn over, or become a sliver, with v at p?
-    bool folds(std::int32_t v, Vec3 p) const;
+    bool folds(std::int32_t v, Vec3 p);
     /// Vertices and faces that have gone give up their places; the order stays.
     /// \return the new number of each vertex, −1 of those that have gone.
     std::vector<std::int32_t> close_gaps();
@@ -124,6 +124,11 @@ class RingMesh {
     void link_all();
     bool closed_fan(std::int32_t v, std::vector<std::int32_t>& follower);
     Refusal free_refusal(const Edge& edge);
+    bool turns(std::int32_t v, const Sectors& sectors, Vec3 p) const;
+    struct SharedFace {
+        std::int32_t of_b, third;  ///< corners
+    };
+    static SharedFace shared_face(const Edge& edge, const Sector& s);
     void unlink(std::int32_t corner);
     void link(std::int32_t corner, std::int32_t v);
     bool all_in_one_fan() const;
