@@ -9,6 +9,7 @@
 #include "check.h"
 #include "check_cloud.h"
 #include "closest_tree.h"
+#include "instruction_sets.h"
 #include "parallel.h"
 
 namespace gaussmap {
@@ -17,10 +18,7 @@ namespace {
 constexpr std::size_t block = 2048;
 
 ClosestKernel best_kernel() {
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) return closest_kernel_avx2;
-#endif
-    return closest_kernel_baseline;
+    return GAUSSMAP_FASTEST(closest_kernel);
 }
 
 void check_queries(Points queries) {

@@ -1,13 +1,12 @@
 // The choice among the kernels of cloud_kernel.h.
 #include "cloud_kernel.h"
 
+#include "instruction_sets.h"
+
 namespace gaussmap {
 
 const CloudKernel& best_cloud_kernel() {
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) return cloud_kernel_avx2;
-#endif
-    return cloud_kernel_baseline;
+    return GAUSSMAP_FASTEST(cloud_kernel);
 }
 
 }  // namespace gaussmap

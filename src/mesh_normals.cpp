@@ -4,6 +4,7 @@
 
 #include "degenerate.h"
 #include "gaussmap/normals.h"
+#include "instruction_sets.h"
 #include "max_normals.h"
 #include "normalize.h"
 #include "scatter.h"
@@ -46,10 +47,7 @@ std::vector<double> area_sums(Points vertices, Triangles faces, const FaceChunks
 }
 
 std::vector<double> max_sums(Points vertices, Triangles faces, const FaceChunks& chunks, const Execution& run) {
-    MaxNormals normals = max_normals_baseline;
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) normals = max_normals_avx2;
-#endif
+    const MaxNormals normals = GAUSSMAP_FASTEST(max_normals);
     return scatter_batches<3>(faces, vertices.count, chunks, run,
                               [&](std::size_t begin, std::size_t end, auto* corners) {
                                   normals(vertices.xyz, faces[begin], end - begin, corners[0][0]);

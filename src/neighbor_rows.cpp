@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "instruction_sets.h"
 #include "search_room.h"
 
 namespace gaussmap {
@@ -32,10 +33,7 @@ void order_tied(const SearchRoom& room, double* first, double* last) {
 }
 
 NearestKernel best_kernel() {
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) return nearest_kernel_avx2;
-#endif
-    return nearest_kernel_baseline;
+    return GAUSSMAP_FASTEST(nearest_kernel);
 }
 
 NeighborRows::NeighborRows(const NeighborTree& tree, std::size_t k, NearestKernel kernel)

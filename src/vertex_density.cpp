@@ -6,6 +6,7 @@
 #include "check.h"
 #include "first_touch.h"
 #include "gaussmap/curvature.h"
+#include "instruction_sets.h"
 #include "parallel.h"
 
 namespace gaussmap {
@@ -15,10 +16,7 @@ constexpr std::size_t stretch = 1 << 12;  // faces a kernel call
 constexpr std::size_t vertex_block = 1 << 12;
 
 const FusedKernel& best_kernel() {
-#ifdef GAUSSMAP_X86
-    if (__builtin_cpu_supports("avx2")) return fused_kernel_avx2;
-#endif
-    return fused_kernel_baseline;
+    return GAUSSMAP_FASTEST(fused_kernel);
 }
 
 /// The kernel over a chunk that is one of several; returns what it set aside.
