@@ -57,14 +57,7 @@ class FourLooks {
         lane_[l].frame = frame_about(lane_[l].view.normal);
         patches_.see(l, lane_[l].frame, lane_[l].view.size);
     }
-    /// The fit in a lane, up to its second degree.
-    HeightField<2> field(int l) const {
-        HeightField<2> field;
-        for (int m = 0; m < monomials(2); ++m) field.c[static_cast<std::size_t>(m)] = fields_.c[m][l];
-        for (int p = 0; p < 3; ++p)
-            for (int q = 0; q < 3; ++q) field.covariance[p][q] = fields_.covariance[p][q][l];
-        return field;
-    }
+    HeightField<2> field(int l) const { return fields_.field(l); }
     SurfaceJet jet(int l) const { return surface_jet(field(l).c, lane_[l].frame, lane_[l].view.size); }
 
     LanePatches& patches_;
@@ -87,12 +80,12 @@ void FourLooks::begin(int l, int to_direction, int to_size) {
 
 /// Turn the views of some lanes until a quadric through the element over its nearest neighbours has no slope there.
 void FourLooks::level(const bool (&wanted)[fit_lanes], const Counts& last) {
-    LaneRange range = {{}, {}, Chart::chord, false};
+    LaneRange range = {{}, {}, Chart::chord, Weights::equal};
     std::copy(last, last + fit_lanes, range.last);
     for (int turn = 0; turn < 2; ++turn) {
         for_active([&](int l, Lane&) { see(l); });
-        kernel_.quadric.collect(patches_, range, true, sums_);
-        kernel_.quadric.solve(sums_, false, false, fields_);
+        kernel_.quadric.collect(patches_.d, patches_, range, true, sums_);
+        kernel_.quadric.solve(sums_, AtElement::zero, false, fields_);
         for_active([&](int l, Lane& lane) {
             if (!wanted[l]) return;
             lane.jet = jet(l);
@@ -135,12 +128,12 @@ void FourLooks::fit_quadrics() {
 
 /// Fit quartics in chords; where they have a slope that matters, once more in their own view.
 void FourLooks::fit_chord_quartics(bool weighted, double level) {
-    LaneRange range = {{}, {}, Chart::chord, weighted};
+    LaneRange range = {{}, {}, Chart::chord, weighted ? Weights::remainder : Weights::equal};
     bool again = true;
     for (int turn = 0; again; ++turn) {
         for (int l = 0; l < fit_lanes; ++l) range.last[l] = lane_[l].quartic_count;
-        kernel_.quartic.collect(patches_, range, true, sums_);
-        kernel_.quartic.solve(sums_, !weighted, !weighted, fields_);
+        kernel_.quartic.collect(patches_.d, patches_, range, true, sums_);
+        kernel_.quartic.solve(sums_, weighted ? AtElement::zero : AtElement::datum, !weighted, fields_);
         again = false;
         for_active([&](int l, Lane& lane) {
             lane.active = fields_.determined[l];
@@ -173,12 +166,12 @@ void FourLooks::fit_equal_quartics() {
 
 /// Residuals of those quartics, and of the same over more neighbours.
 void FourLooks::tell_noise() {
-    LaneRange range = {{}, {}, Chart::chord, false};
+    LaneRange range = {{}, {}, Chart::chord, Weights::equal};
     double residual[fit_lanes];
     std::copy(fields_.residual, fields_.residual + fit_lanes, residual);
     for (int l = 0; l < fit_lanes; ++l) range.first[l] = lane_[l].quartic_count, range.last[l] = counts_[l];
-    kernel_.quartic.collect(patches_, range, false, sums_);
-    kernel_.quartic.solve(sums_, true, false, fields_);
+    kernel_.quartic.collect(patches_.d, patches_, range, false, sums_);
+    kernel_.quartic.solve(sums_, AtElement::datum, false, fields_);
     for_active([&](int l, Lane& lane) {
         if (lane.quartic_count == counts_[l] || !fields_.determined[l]) return;
         const double unit = lane.view.size * lane.view.size;
@@ -210,18 +203,18 @@ void FourLooks::fit_weighted_quartics() {
 
 /// In Monge coordinates, with weights and without.
 void FourLooks::fit_monge_quartics() {
-    LaneRange range = {{}, {}, Chart::monge, true};
+    LaneRange range = {{}, {}, Chart::monge, Weights::remainder};
     for (int l = 0; l < fit_lanes; ++l) range.last[l] = lane_[l].quartic_count;
-    kernel_.quartic.collect(patches_, range, true, sums_);
-    kernel_.quartic.solve(sums_, false, false, fields_);
+    kernel_.quartic.collect(patches_.d, patches_, range, true, sums_);
+    kernel_.quartic.solve(sums_, AtElement::zero, false, fields_);
     for_active([&](int l, Lane& lane) {
         lane.active = fields_.determined[l];
         const SurfaceJet monge = jet(l);
         lane.look.monge = {carried(monge.tensor, monge.normal, lane.jet.normal), squared_norm(monge.tensor), 0};
     });
-    range.weighted = false;
-    kernel_.quartic.collect(patches_, range, true, sums_);
-    kernel_.quartic.solve(sums_, true, false, fields_);
+    range.weights = Weights::equal;
+    kernel_.quartic.collect(patches_.d, patches_, range, true, sums_);
+    kernel_.quartic.solve(sums_, AtElement::datum, false, fields_);
     for_active([&](int l, Lane& lane) {
         if (!fields_.determined[l]) return;
         lane.look.monge.change = lane.look.monge.density - squared_norm(jet(l).tensor);

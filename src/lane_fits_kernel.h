@@ -14,14 +14,25 @@ struct Datum {
     Real u, v, height, weight;
 };
 
+/// Some lanes of what is collected: which neighbours count, and where they are seen from.
+struct Seen {
+    Real first, last, axis[3][3], foot[3];
+
+    GAUSSMAP_INLINE Seen(const LaneViews& views, const LaneRange& range, int lane) {
+        for (int l = 0; l < lanes; ++l) first[l] = range.first[lane + l], last[l] = range.last[lane + l];
+        for (int a = 0; a < 3; ++a) {
+            foot[a] = load(&views.foot[a][lane]);
+            for (int c = 0; c < 3; ++c) axis[a][c] = load(&views.axis[a][c][lane]);
+        }
+    }
+};
+
 /// Neighbour j of the lanes from `lane` on.
-template <bool Chord, bool Weighted>
-GAUSSMAP_INLINE Datum datum(const LanePatches& patches, const LaneRange& range, int lane, int j) {
-    const Real x = load(&patches.d[j][0][lane]), y = load(&patches.d[j][1][lane]), z = load(&patches.d[j][2][lane]);
-    const auto along = [&](int a) {
-        return x * load(&patches.axis[a][0][lane]) + y * load(&patches.axis[a][1][lane]) +
-               z * load(&patches.axis[a][2][lane]);
-    };
+template <bool Chord, Weights Weighing>
+GAUSSMAP_INLINE Datum datum(const LaneNeighbor* neighbors, const Seen& seen, int lane, int j) {
+    const Real x = load(&neighbors[j][0][lane]) - seen.foot[0], y = load(&neighbors[j][1][lane]) - seen.foot[1],
+               z = load(&neighbors[j][2][lane]) - seen.foot[2];
+    const auto along = [&](int a) { return x * seen.axis[a][0] + y * seen.axis[a][1] + z * seen.axis[a][2]; };
     Datum datum = {along(0), along(1), along(2), all(1)};
     const Real flat = datum.u * datum.u + datum.v * datum.v, squared = flat + datum.height * datum.height;
     if (Chord) {
@@ -30,14 +41,14 @@ GAUSSMAP_INLINE Datum datum(const LanePatches& patches, const LaneRange& range, 
         const Real stretch = square_root(select(ratio < 16, ratio, select(flat > 0, all(16), all(1))));
         datum.u *= stretch, datum.v *= stretch;
     }
-    if (Weighted) {
+    if (Weighing == Weights::remainder) {
         // Nearer than a fifth of the unit all weigh alike, so that a pair of almost equal points does not decide alone.
         const Real r = 1 / select(squared > 0.04, squared, all(0.04)), r2 = r * r;
         datum.weight = r2 * r2 * r;
     }
-    Mask there = {};
-    for (int l = 0; l < lanes; ++l) there[l] = -(long long)(j >= range.first[lane + l] && j < range.last[lane + l]);
-    datum.weight = select(there, datum.weight, Real{});
+    if (Weighing == Weights::smoothing) datum.weight = 1 - minimum(squared, all(1)) * (1 / 1.1);
+    const Real at = all(j);
+    datum.weight = select((at >= seen.first) & (at < seen.last), datum.weight, Real{});
     return datum;
 }
 
@@ -70,14 +81,15 @@ GAUSSMAP_INLINE void add(const Datum& a, const Datum& b, Sums<Degree>& sums) {
     sums.square += a.weight * a.height * a.height + b.weight * b.height * b.height;
 }
 
-template <int Degree, bool Chord, bool Weighted>
-void collect(const LanePatches& patches, const LaneRange& range, bool fresh, LaneSums& to) {
+template <int Degree, bool Chord, Weights Weighing>
+void collect(const LaneNeighbor* neighbors, const LaneViews& views, const LaneRange& range, bool fresh, LaneSums& to) {
     int first = range.first[0], last = range.last[0];
     for (int l = 1; l < fit_lanes; ++l) {
         first = range.first[l] < first ? range.first[l] : first;
         last = range.last[l] > last ? range.last[l] : last;
     }
     for (int lane = 0; lane < fit_lanes; lane += lanes) {
+        const Seen seen(views, range, lane);
         Sums<Degree> sums = {};
         if (!fresh) {
             for (int s = 0; s < sums.powers; ++s) sums.power[s] = load(&to.at[to.power + s][lane]);
@@ -85,9 +97,9 @@ void collect(const LanePatches& patches, const LaneRange& range, bool fresh, Lan
             sums.square = load(&to.at[to.square][lane]);
         }
         for (int j = first; j < last; j += 2) {
-            const int next = j + 1 < most_fitted ? j + 1 : j;
-            const Datum a = datum<Chord, Weighted>(patches, range, lane, j);
-            Datum b = datum<Chord, Weighted>(patches, range, lane, next);
+            const int next = j + 1 < last ? j + 1 : j;
+            const Datum a = datum<Chord, Weighing>(neighbors, seen, lane, j);
+            Datum b = datum<Chord, Weighing>(neighbors, seen, lane, next);
             if (next == j) b.weight = Real{};
             add(a, b, sums);
         }
@@ -97,12 +109,24 @@ void collect(const LanePatches& patches, const LaneRange& range, bool fresh, Lan
     }
 }
 
+template <int Degree, bool Chord>
+void collect_in_chart(const LaneNeighbor* neighbors, const LaneViews& views, const LaneRange& range, bool fresh,
+                      LaneSums& sums) {
+    switch (range.weights) {
+        case Weights::equal:
+            return collect<Degree, Chord, Weights::equal>(neighbors, views, range, fresh, sums);
+        case Weights::remainder:
+            return collect<Degree, Chord, Weights::remainder>(neighbors, views, range, fresh, sums);
+        case Weights::smoothing:
+            return collect<Degree, Chord, Weights::smoothing>(neighbors, views, range, fresh, sums);
+    }
+}
+
 template <int Degree>
-void collect_as_told(const LanePatches& patches, const LaneRange& range, bool fresh, LaneSums& sums) {
-    if (range.chart == Chart::chord)
-        (range.weighted ? collect<Degree, true, true> : collect<Degree, true, false>)(patches, range, fresh, sums);
-    else
-        (range.weighted ? collect<Degree, false, true> : collect<Degree, false, false>)(patches, range, fresh, sums);
+void collect_as_told(const LaneNeighbor* neighbors, const LaneViews& views, const LaneRange& range, bool fresh,
+                     LaneSums& sums) {
+    (range.chart == Chart::chord ? collect_in_chart<Degree, true>
+                                 : collect_in_chart<Degree, false>)(neighbors, views, range, fresh, sums);
 }
 
 /// Where the normal equations are among the sums: row r of column c. The right side is one more row, and what fills up
@@ -135,7 +159,8 @@ struct Factors {
     Real inverse[n];                  ///< of D
     Mask determined = Mask{} - 1;
 
-    GAUSSMAP_INLINE Factors(const LaneSums& sums, int lane) {
+    /// \param element  weight of the elements, as data of height 0.
+    GAUSSMAP_INLINE Factors(const LaneSums& sums, double element, int lane) {
         // Of the diagonal: a monomial that the others match to the root of this is not determined.
         constexpr double rank_tolerance = 1e-6;
         for (int c = 0; c < n; ++c) {
@@ -144,12 +169,12 @@ struct Factors {
                 Real a[4];
                 for (int i = 0; i < 4; ++i) a[i] = load(&sums.at[from[r + i]][lane]);
                 // The element itself, where all monomials but the constant are 0.
-                if (Constant && c == 0 && r == 0) a[0] += 1;
+                if (Constant && c == 0 && r == 0) a[0] += element;
                 for (int k = 0; k < c; ++k)
                     for (int i = 0; i < 4; ++i) a[i] -= low[k][r + i] * raw[k][c];
                 for (int i = 0; i < 4; ++i) raw[c][r + i] = a[i];
             }
-            const Real pivot = raw[c][c], diagonal = load(&sums.at[from[c]][lane]) + (Constant && c == 0 ? 1 : 0);
+            const Real pivot = raw[c][c], diagonal = load(&sums.at[from[c]][lane]) + (Constant && c == 0 ? element : 0);
             determined &= (pivot > rank_tolerance * diagonal) & (diagonal <= __DBL_MAX__);
             inverse[c] = 1 / pivot;
             for (int r = c / 4 * 4; r < rows; ++r) low[c][r] = r > c ? raw[c][r] * inverse[c] : Real{};
@@ -179,8 +204,8 @@ GAUSSMAP_INLINE void store_covariance(const Factors<Degree, Constant>& factors, 
 }
 
 template <int Degree, bool Constant>
-void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fields) {
-    const Factors<Degree, Constant> factors(sums, lane);
+void solve_lanes(const LaneSums& sums, double element, bool covariance, int lane, LaneFields& fields) {
+    const Factors<Degree, Constant> factors(sums, element, lane);
     constexpr int n = Factors<Degree, Constant>::n, skip = Constant ? 0 : 1;
     Real residual = load(&sums.at[sums.square][lane]), x[n];
     for (int k = 0; k < n; ++k) {
@@ -197,12 +222,12 @@ void solve_lanes(const LaneSums& sums, bool covariance, int lane, LaneFields& fi
 }
 
 template <int Degree>
-void solve(const LaneSums& sums, bool constant, bool covariance, LaneFields& fields) {
+void solve(const LaneSums& sums, AtElement element, bool covariance, LaneFields& fields) {
     for (int lane = 0; lane < fit_lanes; lane += lanes) {
-        if (constant)
-            solve_lanes<Degree, true>(sums, covariance, lane, fields);
+        if (element == AtElement::zero)
+            solve_lanes<Degree, false>(sums, 0, covariance, lane, fields);
         else
-            solve_lanes<Degree, false>(sums, covariance, lane, fields);
+            solve_lanes<Degree, true>(sums, element == AtElement::datum ? 1 : 0, covariance, lane, fields);
     }
 }
 

@@ -145,14 +145,14 @@ void NormalFit::fit_in_lanes(int degree, LaneNeighborhoods& around, const Group&
     std::fill_n(fields_.determined, fit_lanes, false);
     if (!around.in_lanes() || (degree != 2 && degree != 4)) return;
     const LaneFit& fit = degree == 2 ? best_lane_fit().quadric : best_lane_fit().quartic;
-    LaneRange range = {{}, {}, Chart::monge, false};
+    LaneRange range = {{}, {}, Chart::monge, Weights::equal};
     for (std::size_t l = 0; l < around.count(); ++l) {
         if (!group.wanted[l] || around.counts()[l] < monomials(degree) - 1) continue;
         range.last[l] = around.counts()[l];
         around.patches().see(static_cast<int>(l), group.frame[l], 1);
     }
-    fit.collect(around.patches(), range, true, sums_);
-    fit.solve(sums_, false, false, fields_);
+    fit.collect(around.patches().d, around.patches(), range, true, sums_);
+    fit.solve(sums_, AtElement::zero, false, fields_);
 }
 
 void NormalFit::operator()(LaneNeighborhoods& around, Result (&results)[fit_lanes]) {

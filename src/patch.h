@@ -16,17 +16,6 @@ enum class Chart {
     chord,  ///< by ρ |d| / |ρ|, d the difference in space: a sphere is then an exact quadric (docs/method.md, eq. (16))
 };
 
-/// What a neighbour weighs, by its squared distance in units of the patch's size.
-struct EqualWeights {
-    double operator()(double) const { return 1; }
-};
-
-/// 1 − |d|², and a little more, so that the farthest neighbour counts too: the least error for noisy data (Fan, Gasser,
-/// Gijbels, Brockmann and Engel, 1997).
-struct SmoothingWeights {
-    double operator()(double squared) const { return 1 - std::min(squared, 1.0) / 1.1; }
-};
-
 /// Where neighbours are seen from.
 struct View {
     Vec3 normal;  ///< unit: heights are along it
@@ -35,9 +24,8 @@ struct View {
 };
 
 /// Take in `count` more neighbours, given as differences from the element.
-template <int Degree, class Weights = EqualWeights>
-Frame collect_more(Moments<Degree>& moments, const Vec3* neighbors, int count, const View& view, Chart chart,
-                   Weights weights = {}) {
+template <int Degree>
+Frame collect_more(Moments<Degree>& moments, const Vec3* neighbors, int count, const View& view, Chart chart) {
     const Frame frame = frame_about(view.normal);
     const double unit = 1 / view.size;
     for (int j = 0; j < count; ++j) {
@@ -49,19 +37,18 @@ Frame collect_more(Moments<Degree>& moments, const Vec3* neighbors, int count, c
             const double stretch = flat > 0 ? std::min(std::sqrt(squared / flat), 4.0) : 1;
             u *= stretch, v *= stretch;
         }
-        moments.add(u, v, height, weights(squared));
+        moments.add(u, v, height);
     }
     return frame;
 }
 
 /// The same from the start; with `self`, the element first.
-template <int Degree, class Weights = EqualWeights>
-Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool self, const View& view, Chart chart,
-              Weights weights = {}) {
+template <int Degree>
+Frame collect(Moments<Degree>& moments, const Vec3* neighbors, int count, bool self, const View& view, Chart chart) {
     constexpr Vec3 element = {};
     moments.clear();
-    if (self) collect_more(moments, &element, 1, view, chart, weights);
-    return collect_more(moments, neighbors, count, view, chart, weights);
+    if (self) collect_more(moments, &element, 1, view, chart);
+    return collect_more(moments, neighbors, count, view, chart);
 }
 
 /// The view from the fitted surface itself: its foot under the element, its normal.

@@ -5,8 +5,6 @@
 #include <limits>
 
 #include "parallel.h"
-#include "patch.h"
-#include "principal_normal.h"
 #include "shape_tensor.h"
 #include "slope_fit.h"
 
@@ -15,25 +13,10 @@ namespace {
 
 constexpr std::size_t grain = 256;
 
-/// Weighted sums in place of counts: the sandwich covariance of a fit with `SmoothingWeights` relative to that of
+/// Weighted sums in place of counts: the sandwich covariance of a fit with smoothing weights relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
 /// falls little at borders).
 constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.467};
-
-/// Settle the view on a quadric, which noise sways least; what it left before the last turn, infinite where nothing is
-/// determined.
-double settle_on_quadric(Moments<2>& moments, const std::vector<Vec3>& neighbors, int turns, View& view) {
-    double residual = std::numeric_limits<double>::infinity();
-    for (; turns > 0 && finite(view.normal); --turns) {
-        HeightField<2> field;
-        const Frame frame = collect(moments, neighbors.data(), static_cast<int>(neighbors.size()), false, view,
-                                    Chart::chord, SmoothingWeights());
-        if (!moments.solve(true, field)) break;
-        residual = field.residual;
-        settle(view, frame, field.c);
-    }
-    return finite(view.normal) ? residual : std::numeric_limits<double>::infinity();
-}
 
 }  // namespace
 
@@ -67,71 +50,67 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
         rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
     }
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
-        std::vector<Vec3> neighbors;
-        Moments<2> quadric;
-        Moments<4> quartic;
+        WindowFits windows(static_cast<int>(k) + 1);
+        std::size_t in_lane[fit_lanes];
         for (; a < b; ++a) {
             const std::size_t i = who[a];
             const std::int32_t* row = rows.data() + (by_faces ? i - first : a) * k;
             const Vec3 foot = level_.foot_of(i);
-            neighbors.clear();
-            if (by_faces) neighbors.push_back(level_.at(i) - foot);
+            if (by_faces) windows.add(level_.at(i) - foot);
             for (std::size_t j = 0; j < k && row[j] >= 0; ++j)
-                neighbors.push_back(level_.at(static_cast<std::size_t>(row[j])) - foot);
-            if (neighbors.size() < k) continue;
-            found.half_size[i] = static_cast<float>(length(neighbors[k / 2 - 1]));
-            fit_element(i, rung, neighbors, quadric, quartic, found);
+                windows.add(level_.at(static_cast<std::size_t>(row[j])) - foot);
+            if (windows.count() < static_cast<int>(k)) {
+                windows.drop();
+                continue;
+            }
+            found.half_size[i] = static_cast<float>(length(windows.neighbor(static_cast<int>(k) / 2 - 1)));
             const std::size_t stride = (k + most_samples - 1) / most_samples;
             std::int32_t* to = samples_.data() + i * most_samples;
             for (std::size_t s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
+            in_lane[windows.filled()] = i;
+            windows.close();
+            if (windows.full()) fit_windows(in_lane, rung, windows, found);
         }
+        fit_windows(in_lane, rung, windows, found);
     });
 }
 
-/// The view from the rung below, or while windows are small a fresh one, whichever leaves less: at corners of a noisy
-/// border a first view may be tilted beyond recovery.
-void RungFits::fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, Moments<2>& quadric,
-                           Moments<4>& quartic, Rung& found) {
+/// In the views from the rung below, and while windows are small in fresh ones too.
+void RungFits::fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found) {
     constexpr int rungs_of_fresh_views = 6;
-    const int count = static_cast<int>(neighbors.size());
-    View view = {level_.normal[i], {}, length(neighbors.back())};
-    if (!(view.size > 0)) return;
-    double residual = std::numeric_limits<double>::infinity();
-    if (rung > 0) residual = settle_on_quadric(quadric, neighbors, 1, view);
-    if (rung < rungs_of_fresh_views) {
-        View fresh = {principal_normal(neighbors, count), {}, view.size};
-        const double left = settle_on_quadric(quadric, neighbors, 2, fresh);
-        if (left < residual) view = fresh, residual = left;
-    }
-    if (!std::isfinite(residual)) return;
-    HeightField<2> curved;
-    const Frame frame = collect(quartic, neighbors.data(), count, false, view, Chart::chord, SmoothingWeights());
-    HeightField<4> full;
-    if (!quartic.solve(true, curved, true)) return;
-    found.size[i] = static_cast<float>(view.size);
-    const double size4 = std::pow(view.size, 4), size6 = std::pow(view.size, 6);
-    const auto keep = [&](int q, Family family, const auto& field) {
-        const SurfaceJet jet = surface_jet(field.c, frame, view.size);
-        const auto f = static_cast<int>(family);
+    Vec3 normals[fit_lanes];
+    for (int l = 0; l < windows.filled(); ++l) normals[l] = rung > 0 ? level_.normal[who[l]] : Vec3{NAN, NAN, NAN};
+    windows.fit(normals, rung < rungs_of_fresh_views);
+    for (int l = 0; l < windows.filled(); ++l)
+        if (windows[l].determined[0]) keep(who[l], windows[l], found);
+    windows.clear();
+}
+
+void RungFits::keep(std::size_t i, const WindowFit& fit, Rung& found) {
+    const double size = fit.view.size, size4 = std::pow(size, 4), size6 = std::pow(size, 6);
+    found.size[i] = static_cast<float>(size);
+    for (int q = 0; q < 2; ++q) {
+        if (!fit.determined[q]) continue;
+        const HeightField<2>& field = fit.field[q];
+        const SurfaceJet jet = surface_jet(field.c, fit.frame, size);
+        const auto f = static_cast<int>(q == 0 ? Family::quadric : Family::quartic);
         const double each = sandwich[q] / level_.members;
-        const double free = quartic.weight() - weight_of_unknown[q] * (count - field.free);
+        const double free = fit.weight - weight_of_unknown[q] * WindowFit::unknowns[q];
         found.tensor[f][i] = jet.tensor;
         found.density[f][i] = static_cast<float>(squared_norm(jet.tensor));
         found.variance[q][i] = static_cast<float>(each * density_variance(field) / size6);
         found.trace[q][i] = static_cast<float>(each * shape_variance(field) / size4);
-        found.residual[q][i] = static_cast<float>(level_.members * field.residual /
-                                                  std::max(free, 0.1 * quartic.weight()) * view.size * view.size);
-        return jet;
-    };
-    const SurfaceJet jet = keep(0, Family::quadric, curved);
-    found.normal[i] = jet.normal;
-    // A foot that runs away is no foot.
-    const Vec3 step = view.foot + view.size * curved.c[0] * frame.n;
-    if (squared(step) < 0.25 * view.size * view.size && finite(jet.normal)) {
-        store(level_.foot.data() + 3 * i, level_.foot_of(i) + step);
-        level_.normal[i] = jet.normal;
+        found.residual[q][i] =
+            static_cast<float>(level_.members * field.residual / std::max(free, 0.1 * fit.weight) * size * size);
+        if (q == 1) continue;
+        found.normal[i] = jet.normal;
+        // A foot that runs away is no foot.
+        const Vec3 step = fit.view.foot + size * field.c[0] * fit.frame.n;
+        if (squared(step) < 0.25 * size * size && finite(jet.normal)) {
+            store(level_.foot.data() + 3 * i, level_.foot_of(i) + step);
+            level_.normal[i] = jet.normal;
+        }
     }
-    if (quartic.solve(true, full, true)) keep(1, Family::quartic, full);
 }
 
 void RungFits::average(Rung& found) {

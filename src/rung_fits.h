@@ -10,9 +10,9 @@
 
 #include "fitted_curvature.h"
 #include "gaussmap/neighbors.h"
-#include "height_fit.h"
 #include "pyramid.h"
 #include "scale_ladder.h"
+#include "window_fits.h"
 
 namespace gaussmap {
 
@@ -73,8 +73,8 @@ class RungFits {
 
   private:
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
-    void fit_element(std::size_t i, int rung, const std::vector<Vec3>& neighbors, Moments<2>& quadric,
-                     Moments<4>& quartic, Rung& found);
+    void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
+    void keep(std::size_t i, const WindowFit& fit, Rung& found);
     void average(Rung& found);
     void average_element(std::size_t i, Rung& found);
 

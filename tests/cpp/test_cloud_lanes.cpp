@@ -12,6 +12,7 @@ using support::Random;
 
 namespace {
 
+constexpr Weights all_weights[] = {Weights::equal, Weights::remainder, Weights::smoothing};
 constexpr Frame plain = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 /// A polynomial of the fourth degree, another in each lane.
@@ -34,15 +35,15 @@ LanePatches random_patches(std::uint64_t seed) {
     return patches;
 }
 
-LaneRange range(int count, Chart chart, bool weighted) {
-    return {{}, {count, count, count, count}, chart, weighted};
+LaneRange range(int count, Chart chart, Weights weights) {
+    return {{}, {count, count, count, count}, chart, weights};
 }
 
-LaneFields fit(const LaneFit& kernel, const LanePatches& patches, const LaneRange& range, bool constant) {
+LaneFields fit(const LaneFit& kernel, const LanePatches& patches, const LaneRange& range, AtElement element) {
     LaneSums sums;
     LaneFields fields = {};
-    kernel.collect(patches, range, true, sums);
-    kernel.solve(sums, constant, true, fields);
+    kernel.collect(patches.d, patches, range, true, sums);
+    kernel.solve(sums, element, true, fields);
     return fields;
 }
 
@@ -59,9 +60,9 @@ std::vector<const LaneFitKernel*> kernels() {
 TEST(LaneFits, FindPolynomials) {
     const LanePatches patches = random_patches(1);
     for (const LaneFitKernel* kernel : kernels())
-        for (const bool weighted : {false, true})
-            for (const bool constant : {false, true}) {
-                const LaneFields fields = fit(kernel->quartic, patches, range(24, Chart::monge, weighted), constant);
+        for (const Weights weights : all_weights)
+            for (const AtElement element : {AtElement::zero, AtElement::datum, AtElement::free}) {
+                const LaneFields fields = fit(kernel->quartic, patches, range(24, Chart::monge, weights), element);
                 for (int l = 0; l < fit_lanes; ++l) {
                     const double a = 1 + 0.25 * l, truth[6] = {0, 0.03 * a, -0.02, 0.3, -0.1 * a, 0.2};
                     ASSERT_TRUE(fields.determined[l]);
@@ -84,7 +85,8 @@ TEST(LaneFits, ChordsMakeSpheresQuadrics) {
         }
     for (int l = 0; l < fit_lanes; ++l) patches.see(l, plain, 1);
     for (const LaneFitKernel* kernel : kernels()) {
-        const LaneFields fields = fit(kernel->quadric, patches, range(9, Chart::chord, false), false);
+        const LaneFields fields =
+            fit(kernel->quadric, patches, range(9, Chart::chord, Weights::equal), AtElement::zero);
         for (int l = 0; l < fit_lanes; ++l) {
             ASSERT_NEAR(fields.c[3][l], -0.5 / radius, 1e-12);
             ASSERT_NEAR(fields.c[4][l], 0, 1e-12);
@@ -97,14 +99,14 @@ TEST(LaneFits, ChordsMakeSpheresQuadrics) {
 /// the other tell it.
 TEST(LaneFits, CovarianceOfUnitNoise) {
     const LanePatches patches = random_patches(3);
-    const LaneRange over = range(24, Chart::monge, false);
+    const LaneRange over = range(24, Chart::monge, Weights::equal);
     for (const LaneFitKernel* kernel : kernels()) {
-        const LaneFields fields = fit(kernel->quartic, patches, over, false);
+        const LaneFields fields = fit(kernel->quartic, patches, over, AtElement::zero);
         double sum[3][3] = {};
         for (int j = 0; j < 24; ++j) {
             LanePatches unit = patches;
             for (int i = 0; i < 24; ++i) unit.d[i][2][1] = i == j ? 1 : 0;
-            const LaneFields one = fit(kernel->quartic, unit, over, false);
+            const LaneFields one = fit(kernel->quartic, unit, over, AtElement::zero);
             const double q[3] = {2 * one.c[3][1], one.c[4][1], 2 * one.c[5][1]};
             for (int a = 0; a < 3; ++a)
                 for (int b = 0; b < 3; ++b) sum[a][b] += q[a] * q[b];
@@ -120,13 +122,14 @@ TEST(LaneFits, RangesAddUp) {
     for (const LaneFitKernel* kernel : kernels()) {
         LaneSums sums;
         LaneFields fields = {};
-        LaneRange part = {{}, {24, 20, 16, 24}, Chart::chord, false};
-        kernel->quartic.collect(patches, part, true, sums);
+        LaneRange part = {{}, {24, 20, 16, 24}, Chart::chord, Weights::equal};
+        kernel->quartic.collect(patches.d, patches, part, true, sums);
         std::copy(part.last, part.last + fit_lanes, part.first);
         std::fill_n(part.last, fit_lanes, 36);
-        kernel->quartic.collect(patches, part, false, sums);
-        kernel->quartic.solve(sums, true, false, fields);
-        const LaneFields whole = fit(kernel->quartic, patches, range(36, Chart::chord, false), true);
+        kernel->quartic.collect(patches.d, patches, part, false, sums);
+        kernel->quartic.solve(sums, AtElement::datum, false, fields);
+        const LaneFields whole =
+            fit(kernel->quartic, patches, range(36, Chart::chord, Weights::equal), AtElement::datum);
         for (int l = 0; l < fit_lanes; ++l)
             for (int m = 0; m < 6; ++m) ASSERT_NEAR(fields.c[m][l], whole.c[m][l], 1e-10);
     }
@@ -140,10 +143,10 @@ TEST(LaneFits, LanesStandAlone) {
     for (int j = 0; j < 24; ++j) mixed.d[j][0][1] = j % 4 - 1, mixed.d[j][1][1] = j / 4 - 2.5, mixed.d[j][2][1] = 0.1;
     mixed.see(2, {{NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN}}, NAN);
     for (const LaneFitKernel* kernel : kernels())
-        for (const bool weighted : {false, true}) {
-            const LaneFields all = fit(kernel->quartic, good, range(24, Chart::chord, weighted), false),
-                             some = fit(kernel->quartic, mixed, range(24, Chart::monge, weighted), false),
-                             chord = fit(kernel->quartic, mixed, range(24, Chart::chord, weighted), false);
+        for (const Weights weights : all_weights) {
+            const LaneFields all = fit(kernel->quartic, good, range(24, Chart::chord, weights), AtElement::zero),
+                             some = fit(kernel->quartic, mixed, range(24, Chart::monge, weights), AtElement::zero),
+                             chord = fit(kernel->quartic, mixed, range(24, Chart::chord, weights), AtElement::zero);
             EXPECT_FALSE(some.determined[1]);
             EXPECT_FALSE(some.determined[2]);
             EXPECT_TRUE(some.determined[0] && some.determined[3]);
@@ -157,15 +160,15 @@ TEST(LaneFits, SameBitsFromEveryInstructionSet) {
     if (!__builtin_cpu_supports("avx2")) GTEST_SKIP() << "this machine has no AVX2";
     const LanePatches patches = random_patches(6);
     for (const Chart chart : {Chart::monge, Chart::chord})
-        for (const bool weighted : {false, true})
-            for (const bool constant : {false, true}) {
-                LaneRange over = range(24, chart, weighted);
+        for (const Weights weights : all_weights)
+            for (const AtElement element : {AtElement::zero, AtElement::datum, AtElement::free}) {
+                LaneRange over = range(24, chart, weights);
                 over.last[1] = 17, over.first[2] = 3, over.last[3] = 23;
-                const LaneFields one = fit(lane_fit_baseline.quartic, patches, over, constant),
-                                 other = fit(lane_fit_avx2.quartic, patches, over, constant);
+                const LaneFields one = fit(lane_fit_baseline.quartic, patches, over, element),
+                                 other = fit(lane_fit_avx2.quartic, patches, over, element);
                 ASSERT_EQ(std::memcmp(&one, &other, sizeof one), 0);
-                const LaneFields few = fit(lane_fit_baseline.quadric, patches, range(9, chart, weighted), constant),
-                                 same = fit(lane_fit_avx2.quadric, patches, range(9, chart, weighted), constant);
+                const LaneFields few = fit(lane_fit_baseline.quadric, patches, range(9, chart, weights), element),
+                                 same = fit(lane_fit_avx2.quadric, patches, range(9, chart, weights), element);
                 ASSERT_EQ(std::memcmp(&few, &same, sizeof few), 0);
             }
 }
