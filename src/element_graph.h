@@ -1,11 +1,9 @@
 // Averages over the surface: fields on elements and their nearest neighbours.
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <initializer_list>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,65 +20,81 @@ struct ElementGraph {
     const std::int32_t* operator[](std::size_t i) const { return index.data() + i * degree; }
 };
 
-/// Replace the field `times` times by its mean over each element and its neighbours; values that are not finite are
-/// left out. After t times a value has come from about √t edges away.
-inline void diffuse(std::vector<float>& field, const ElementGraph& graph, int times, const Execution& run) {
-    constexpr std::size_t grain = 4096;
-    std::vector<float> next(field.size());
-    for (int t = 0; t < times; ++t) {
-        for_blocks(field.size(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
-            for (; i < last; ++i) {
-                double sum = 0;
-                int terms = 0;
-                const auto take = [&](float value) {
-                    if (std::isfinite(value)) sum += value, ++terms;
-                };
-                take(field[i]);
-                for (std::size_t j = 0; j < ElementGraph::degree && graph[i][j] >= 0; ++j)
-                    take(field[static_cast<std::size_t>(graph[i][j])]);
-                next[i] = terms > 0 ? static_cast<float>(sum / terms) : std::numeric_limits<float>::quiet_NaN();
-            }
-        });
-        std::swap(field, next);
-    }
-}
-
-/// The same of up to four fields together, in less time than one after the other; sums are of single precision.
-inline void diffuse(std::initializer_list<std::vector<float>*> fields, const ElementGraph& graph, int times,
-                    const Execution& run) {
-    constexpr std::size_t grain = 4096;
+/// The values of up to 4 · Registers fields at an element.
+template <std::size_t Registers>
+struct FieldValues {
     typedef float Floats __attribute__((vector_size(16)));
     typedef std::int32_t Flags __attribute__((vector_size(16)));
-    const std::size_t count = graph.count();
-    std::vector<Floats> values(count), next(count);
-    std::size_t lane = 0;
-    for (const std::vector<float>* field : fields) {
-        for (std::size_t i = 0; i < count; ++i) values[i][lane] = (*field)[i];
-        ++lane;
-    }
-    for (int t = 0; t < times; ++t) {
-        for_blocks(count, grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
-            for (; i < last; ++i) {
-                Floats sum = {};
-                Flags terms = {};
-                const auto take = [&](Floats value) {
-                    const Flags finite = value - value == Floats{};
-                    sum += (Floats)((Flags)value & finite);
-                    terms -= finite;
-                };
-                take(values[i]);
-                for (std::size_t j = 0; j < ElementGraph::degree && graph[i][j] >= 0; ++j)
-                    take(values[static_cast<std::size_t>(graph[i][j])]);
-                next[i] = sum / __builtin_convertvector(terms, Floats);  // NaN where there are none
+    Floats part[Registers] = {};
+
+    static Flags finite(Floats value) { return value - value == Floats{}; }
+};
+
+/// Means of elements and their neighbours, for the elements [first, last); true where all of them are finite.
+/// \tparam Finite  whether all values are: then nothing has to be left out.
+template <bool Finite, std::size_t Registers>
+bool average_neighbors(const std::vector<FieldValues<Registers>>& values, const ElementGraph& graph, std::size_t first,
+                       std::size_t last, std::vector<FieldValues<Registers>>& next) {
+    using Values = FieldValues<Registers>;
+    using Floats = typename Values::Floats;
+    using Flags = typename Values::Flags;
+    Flags all_finite = ~Flags{};
+    for (std::size_t i = first; i < last; ++i) {
+        Values sum;
+        Flags terms[Registers] = {};
+        const auto take = [&](const Values& value) {
+            for (std::size_t r = 0; r < Registers; ++r) {
+                const Flags there = Finite ? ~Flags{} : Values::finite(value.part[r]);
+                sum.part[r] += (Floats)((Flags)value.part[r] & there);
+                terms[r] -= there;
             }
+        };
+        take(values[i]);
+        for (std::size_t j = 0; j < ElementGraph::degree && graph[i][j] >= 0; ++j)
+            take(values[static_cast<std::size_t>(graph[i][j])]);
+        for (std::size_t r = 0; r < Registers; ++r) {
+            next[i].part[r] = sum.part[r] / __builtin_convertvector(terms[r], Floats);  // NaN where there are none
+            all_finite &= Values::finite(next[i].part[r]);
+        }
+    }
+    return (all_finite[0] & all_finite[1] & all_finite[2] & all_finite[3]) != 0;
+}
+
+template <std::size_t Registers>
+void diffuse_together(std::vector<float>* const* fields, std::size_t count, const ElementGraph& graph, int times,
+                      const Execution& run) {
+    constexpr std::size_t grain = 1024;
+    const std::size_t elements = graph.count();
+    std::vector<FieldValues<Registers>> values(elements), next(elements);
+    for (std::size_t f = 0; f < count; ++f)
+        for (std::size_t i = 0; i < elements; ++i) values[i].part[f / 4][f % 4] = (*fields[f])[i];
+    std::vector<std::uint8_t> finite(block_count(elements, grain));
+    bool all_finite = false;
+    for (int t = 0; t < times; ++t) {
+        for_blocks(elements, grain, {run.threads, {}}, [&](std::size_t block, std::size_t first, std::size_t last) {
+            finite[block] = all_finite ? average_neighbors<true>(values, graph, first, last, next)
+                                       : average_neighbors<false>(values, graph, first, last, next);
         });
+        all_finite = std::find(finite.begin(), finite.end(), 0) == finite.end();
         std::swap(values, next);
     }
-    lane = 0;
-    for (std::vector<float>* field : fields) {
-        for (std::size_t i = 0; i < count; ++i) (*field)[i] = values[i][lane];
-        ++lane;
+    for (std::size_t f = 0; f < count; ++f)
+        for (std::size_t i = 0; i < elements; ++i) (*fields[f])[i] = values[i].part[f / 4][f % 4];
+}
+
+/// Replace each field `times` times by its mean over each element and its neighbours; values that are not finite are
+/// left out. After t times a value has come from about √t edges away. Up to eight fields go together, a register lane
+/// each, in far less time than one after the other.
+inline void diffuse(const std::vector<std::vector<float>*>& fields, const ElementGraph& graph, int times,
+                    const Execution& run) {
+    constexpr std::size_t most = 8;
+    for (std::size_t first = 0; first < fields.size(); first += most) {
+        const std::size_t count = std::min(most, fields.size() - first);
+        (count > 4 ? diffuse_together<2> : diffuse_together<1>)(fields.data() + first, count, graph, times, run);
     }
+}
+inline void diffuse(std::vector<float>& field, const ElementGraph& graph, int times, const Execution& run) {
+    diffuse({&field}, graph, times, run);
 }
 
 /// For each element the squared difference between its value and the mean of its neighbours'.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "automatic.h"
 #include "bounding_box.h"
@@ -10,6 +12,7 @@
 #include "normal_regression.h"
 #include "one_ring.h"
 #include "parallel.h"
+#include "pool.h"
 #include "shape_operator.h"
 #include "shape_tensor.h"
 #include "vertex_rings.h"
@@ -25,9 +28,11 @@ Elements elements_of(Points vertices, const VertexRings& rings) {
     elements.count = vertices.count;
     elements.connected = true;
     elements.position = [vertices](std::size_t i) { return load(vertices[i]); };
-    elements.neighbors = [&rings](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
-        VertexRings::Room room;
-        for (std::size_t i = first; i < last; ++i, rows += k) rings.nearest(i, k, room, rows);
+    elements.neighbors = [&rings, rooms = std::make_shared<Pool<VertexRings::Room>>()](
+                             std::size_t first, std::size_t last, int k, std::int32_t* rows) {
+        std::unique_ptr<VertexRings::Room> room = rooms->take();
+        for (std::size_t i = first; i < last; ++i, rows += k) rings.nearest(i, k, *room, rows);
+        rooms->give_back(std::move(room));
     };
     return elements;
 }

@@ -96,6 +96,14 @@ Measured nothing_measured(std::size_t count) {
     return measured;
 }
 
+/// What the next rung changes, by family.
+struct Changes {
+    std::array<Field, families> variance;  ///< of the density, by noise
+    std::array<Field, families> square;    ///< squared changes relative to those expected of noise, over a wide region
+    std::array<Field, families> near;      ///< the same near by
+    std::array<Field, families> around;    ///< mean of the neighbours' densities
+};
+
 /// One level's part of the climb.
 class Ladder {
   public:
@@ -108,7 +116,8 @@ class Ladder {
 
   private:
     void estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider);
-    void weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Field& residual);
+    Changes find_changes(const Rung& lower, const Rung& upper);
+    void weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes);
 
     const Level& level_;
     Standing& standing_;
@@ -180,31 +189,55 @@ void mix(const Candidate& candidate, std::size_t i, Measured& measured) {
     measured.choice[i] = candidate.choice;
 }
 
-/// Mix in a family's values.
-void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Field& residual) {
-    const Traits& known = traits[static_cast<std::size_t>(family)];
-    const int q = of_quartic(family) ? 1 : 0;
+/// The density of a family, less what noise adds to it.
+double unbiased(const Rung& on, int family, const Field& noise, std::size_t i) {
+    return on.density[family][i] -
+           noise[i] * relative_variance(on, family, i) * on.trace[of_quartic(family) ? 1 : 0][i];
+}
+
+/// All families together, as averages over the surface nearby take less time so.
+Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
-    const auto relative = [&](const Rung& on, std::size_t i) { return relative_variance(on, family, i); };
-    const auto unbiased = [&](const Rung& on, std::size_t i) {
-        return on.density[family][i] - noise[i] * relative(on, i) * on.trace[q][i];
-    };
-    Field variance(count), change(count), around = lower.density[family];
-    for (std::size_t i = 0; i < count; ++i) {
-        // The square of what noise adds to the density is of second order, and counts where it is not small.
-        const double part = noise[i] * relative(lower, i), second = part * lower.trace[q][i];
-        variance[i] = static_cast<float>(part * lower.variance[q][i] + second * second);
+    Changes changes;
+    std::vector<Field*> variances, squares, densities;
+    for (int family = 0; family < families; ++family) {
+        const int q = of_quartic(family) ? 1 : 0;
+        Field& variance = changes.variance[family];
+        variance.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            // The square of what noise adds to the density is of second order, and counts where it is not small.
+            const double part = noise[i] * relative_variance(lower, family, i), second = part * lower.trace[q][i];
+            variance[i] = static_cast<float>(part * lower.variance[q][i] + second * second);
+        }
+        changes.around[family] = lower.density[family];
+        variances.push_back(&variance), squares.push_back(&changes.square[family]);
+        densities.push_back(&changes.around[family]);
     }
-    diffuse(variance, level_.graph, reach_of_variances, run_);
-    for (std::size_t i = 0; i < count; ++i) {
-        const double squared = std::pow(unbiased(upper, i) - unbiased(lower, i), 2);
-        change[i] = static_cast<float>(std::min(squared / (known.change * variance[i]), most_surprising));
+    diffuse(variances, level_.graph, reach_of_variances, run_);
+    for (int family = 0; family < families; ++family) {
+        const double known = traits[static_cast<std::size_t>(family)].change;
+        changes.square[family].resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double squared = std::pow(unbiased(upper, family, noise, i) - unbiased(lower, family, noise, i), 2);
+            changes.square[family][i] =
+                static_cast<float>(std::min(squared / (known * changes.variance[family][i]), most_surprising));
+        }
     }
-    diffuse(change, level_.graph, near_reach, run_);
-    Field near = change;
-    diffuse(change, level_.graph, reach_of_errors - near_reach, run_);
-    diffuse(around, level_.graph, 1, run_);
+    diffuse(squares, level_.graph, near_reach, run_);
+    changes.near = changes.square;
+    diffuse(squares, level_.graph, reach_of_errors - near_reach, run_);
+    diffuse(densities, level_.graph, 1, run_);
+    return changes;
+}
+
+/// Mix in a family's values.
+void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes) {
+    const Traits& known = traits[static_cast<std::size_t>(family)];
+    const std::size_t count = level_.count();
+    const Field& noise = standing_.noise;
+    const Field &variance = changes.variance[family], &change = changes.square[family], &near = changes.near[family],
+                &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
@@ -232,7 +265,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
             if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
-        mix({std::max(0.0, unbiased(lower, i)), risk, lower.normal[i], lower.tensor[family][i],
+        mix({std::max(0.0, unbiased(lower, family, noise, i)), risk, lower.normal[i], lower.tensor[family][i],
              rung_choice(rung, static_cast<Family>(family))},
             i, measured_);
     }
@@ -241,10 +274,11 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
 void Ladder::weigh(int rung, const Rung& lower, const Rung& upper) {
     Field residual[2] = {lower.residual[0], lower.residual[1]};
     Field wider = upper.residual[1];
-    for (Field* field : {&residual[0], &residual[1], &wider}) diffuse(*field, level_.graph, reach_of_variances, run_);
+    diffuse({&residual[0], &residual[1], &wider}, level_.graph, reach_of_variances, run_);
     estimate_noise(rung, lower, residual[1], wider);
+    const Changes changes = find_changes(lower, upper);
     for (int family = 0; family < families; ++family)
-        weigh_family(rung, family, lower, upper, residual[of_quartic(family) ? 1 : 0]);
+        weigh_family(rung, family, lower, residual[of_quartic(family) ? 1 : 0], changes);
 }
 
 /// Elements on which every family has had its best leave the ladder, once their neighbours do not need them either.

@@ -87,29 +87,24 @@ VertexRings::VertexRings(Points vertices, Triangles faces)
     neighbor_.shrink_to_fit();
 }
 
-void VertexRings::Room::begin(std::size_t slots) {
-    for (const std::size_t slot : taken_) slots_[slot] = -1;
-    taken_.clear();
-    met_.clear();
-    if (slots_.size() >= slots) return;
-    std::size_t size = 64;
-    while (size < slots) size *= 2;
-    slots_.assign(size, -1);
+void VertexRings::Room::begin(std::size_t vertices, std::int32_t vertex) {
+    for (const std::int32_t met : met_) known_[static_cast<std::size_t>(met)] = 0;
+    known_.resize(vertices, 0);
+    met_.assign(1, vertex);
+    known_[static_cast<std::size_t>(vertex)] = 1;
 }
 
-void VertexRings::Room::enter(std::int32_t vertex) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t slot = (static_cast<std::uint32_t>(vertex) * std::uint64_t{0x9e3779b97f4a7c15u} >> 32) & mask;
-    for (; slots_[slot] >= 0; slot = (slot + 1) & mask)
-        if (slots_[slot] == vertex) return;
-    slots_[slot] = vertex;
-    taken_.push_back(slot);
-    met_.push_back(vertex);
-    if (2 * met_.size() > slots_.size()) {
-        const std::vector<std::int32_t> again = met_;
-        begin(2 * slots_.size());
-        for (const std::int32_t v : again) enter(v);
+/// Those that are not met yet; without a branch on which they are, as no processor could guess.
+void VertexRings::Room::enter(std::span<const std::int32_t> around) {
+    std::size_t count = met_.size();
+    met_.resize(count + around.size());
+    for (const std::int32_t vertex : around) {
+        std::uint8_t& known = known_[static_cast<std::size_t>(vertex)];
+        met_[count] = vertex;
+        count += known ^ 1U;
+        known = 1;
     }
+    met_.resize(count);
 }
 
 /// Nearest first, ties by index, as far as the first `wanted` of all; by buckets, since squared distances on a surface
@@ -135,21 +130,28 @@ void VertexRings::Room::sort(std::size_t from, std::size_t wanted) {
     for (std::size_t b = 1; b <= buckets; ++b) ends_[b] += ends_[b - 1];
     unsorted_.assign(begin, nearest_.end());
     for (const Met& met : unsorted_) begin[static_cast<std::ptrdiff_t>(ends_[bucket(met)]++)] = met;
-    for (std::size_t b = 0, first = 0; b < buckets && from + first < wanted; first = ends_[b++])
-        std::sort(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(ends_[b]), nearer);
+    // What is wanted, by insertion: hardly anything lies far from its place.
+    const auto end = begin + static_cast<std::ptrdiff_t>(*std::find_if(
+                                 ends_.begin(), ends_.end() - 2, [&](std::size_t e) { return from + e >= wanted; }));
+    for (auto met = begin; met != end; ++met) {
+        const Met moved = *met;
+        auto to = met;
+        for (; to != begin && nearer(moved, to[-1]); --to) *to = to[-1];
+        *to = moved;
+    }
 }
 
 /// Whole rings until there are enough; the sizes of the first and of the first two, the vertex included.
 void VertexRings::meet(std::size_t vertex, std::size_t enough, std::size_t hub, Room& room,
                        std::size_t (&inner)[2]) const {
-    room.enter(static_cast<std::int32_t>(vertex));
+    room.begin(vertices_.count, static_cast<std::int32_t>(vertex));
     std::size_t rings = 0;
     for (std::size_t at = 0; at < room.met_.size() && room.met_.size() <= enough; ++rings) {
         for (const std::size_t end = room.met_.size(); at < end; ++at) {
             const auto v = static_cast<std::size_t>(room.met_[at]);
             // A fan about a hub would put all of its rim into every search.
             if (v != vertex && degree(v) > hub) continue;
-            for (const std::int32_t other : around(v)) room.enter(other);
+            room.enter(around(v));
         }
         for (std::size_t r = rings; r < 2; ++r) inner[r] = room.met_.size();
     }
@@ -157,7 +159,6 @@ void VertexRings::meet(std::size_t vertex, std::size_t enough, std::size_t hub, 
 
 void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* row) const {
     const auto wanted = static_cast<std::size_t>(k);
-    room.begin(4 * wanted);
     std::size_t inner[2] = {};  // vertices met on the first ring, and on the first two
     meet(vertex, wanted + wanted / 4, 4 * wanted, room, inner);
     const Vec3 here = load(vertices_[vertex]);

@@ -28,18 +28,17 @@ class VertexRings {
         return {neighbor_.data() + offset_[vertex], degree(vertex)};
     }
 
-    /// What a search needs, used again for the next: a thread's own.
+    /// What a search needs, used again for the next: a thread's own. A byte a vertex.
     class Room {
         friend class VertexRings;
         struct Met {
             double squared;
             std::int32_t index;
         };
-        void enter(std::int32_t vertex);
-        void begin(std::size_t slots);
+        void begin(std::size_t vertices, std::int32_t vertex);
+        void enter(std::span<const std::int32_t> around);
         void sort(std::size_t from, std::size_t wanted);
-        std::vector<std::int32_t> slots_;  ///< open addressing; −1 where free
-        std::vector<std::size_t> taken_;   ///< of the slots
+        std::vector<std::uint8_t> known_;  ///< whether a vertex is among those met
         std::vector<std::int32_t> met_;    ///< in the order of the rings
         std::vector<Vec3> rings_;          ///< the first two, as differences
         std::vector<Met> nearest_, unsorted_;
