@@ -19,7 +19,7 @@ struct Elements {
     std::size_t count = 0;
     std::function<Vec3(std::size_t)> position;
     /// For elements [first, last): up to k others each, nearest first, −1 where there are fewer; rows of k. Called from
-    /// several threads at once, with blocks that begin at multiples of `block`.
+    /// several threads at once; unless `connected`, with blocks that begin at multiples of `block`.
     std::function<void(std::size_t first, std::size_t last, int k, std::int32_t* rows)> neighbors;
     static constexpr std::size_t block = 256;
     /// Neighbours are told by faces, which see through to no other sheet; else by distances in space.

@@ -8,6 +8,7 @@
 
 #include "frame.h"
 #include "gaussmap/neighbors.h"
+#include "lane_averages.h"
 #include "parallel.h"
 #include "unit_cholesky.h"
 

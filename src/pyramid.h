@@ -12,9 +12,6 @@
 
 namespace gaussmap {
 
-/// Normals of which the cosine is less look too far apart to be of one sheet.
-constexpr double one_sheet = 0.3;
-
 struct Level {
     static constexpr int group = 3;  ///< elements that one of the next level stands for
 

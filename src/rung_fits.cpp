@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
+#include "instruction_sets.h"
 #include "parallel.h"
 #include "shape_tensor.h"
-#include "slope_fit.h"
 
 namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 256;
+
+LaneAverageKernel* best_lane_averages() {
+    return GAUSSMAP_FASTEST(lane_averages);
+}
 
 /// Weighted sums in place of counts: the sandwich covariance of a fit with smoothing weights relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
@@ -25,7 +29,7 @@ Rung RungFits::step(int rung) {
     constexpr std::size_t part = 64 * grain;  // whose rows are held at once
     for (std::size_t first = 0; first < level_.count(); first += part)
         fit(rung, first, std::min(level_.count(), first + part), found);
-    average(found);
+    average(rung, found);
     return found;
 }
 
@@ -38,13 +42,17 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
         feet.insert(feet.end(), {level_.foot[3 * i], level_.foot[3 * i + 1], level_.foot[3 * i + 2]});
     }
     if (who.empty()) return;
-    const auto k = static_cast<std::size_t>(rung_neighbors(rung) / static_cast<int>(level_.members));
+    const std::size_t k = window(rung);
     const bool by_faces = elements_.connected && level_.members == 1;
     std::vector<std::int32_t> rows;
     if (by_faces) {
         rows.assign((last - first) * k, -1);
         for_blocks(last - first, Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
-            elements_.neighbors(first + a, first + b, static_cast<int>(k), rows.data() + a * k);
+            const auto on = [&](std::size_t i) { return active_[first + i] != 0; };
+            for (std::size_t end = a; a < b; a = end) {
+                for (end = a + 1; end < b && on(end) == on(a);) ++end;
+                if (on(a)) elements_.neighbors(first + a, first + end, static_cast<int>(k), rows.data() + a * k);
+            }
         });
     } else {
         rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
@@ -64,14 +72,15 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
                 continue;
             }
             found.half_size[i] = static_cast<float>(length(windows.neighbor(static_cast<int>(k) / 2 - 1)));
-            const std::size_t stride = (k + most_samples - 1) / most_samples;
+            const std::size_t stride = samples_stride(k);
             std::int32_t* to = samples_.data() + i * most_samples;
-            for (std::size_t s = 0; s < most_samples; ++s) to[s] = s * stride < k ? row[s * stride] : -1;
+            for (std::size_t j = 0; j < k; j += stride, ++to)
+                *to = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1;
             in_lane[windows.filled()] = i;
             windows.close();
             if (windows.full()) fit_windows(in_lane, rung, windows, found);
         }
-        fit_windows(in_lane, rung, windows, found);
+        if (windows.filled() > 0) fit_windows(in_lane, rung, windows, found);
     });
 }
 
@@ -87,7 +96,7 @@ void RungFits::fit_windows(const std::size_t (&who)[fit_lanes], int rung, Window
 }
 
 void RungFits::keep(std::size_t i, const WindowFit& fit, Rung& found) {
-    const double size = fit.view.size, size4 = std::pow(size, 4), size6 = std::pow(size, 6);
+    const double size = fit.view.size, size2 = size * size, size4 = size2 * size2;
     found.size[i] = static_cast<float>(size);
     for (int q = 0; q < 2; ++q) {
         if (!fit.determined[q]) continue;
@@ -98,76 +107,97 @@ void RungFits::keep(std::size_t i, const WindowFit& fit, Rung& found) {
         const double free = fit.weight - weight_of_unknown[q] * WindowFit::unknowns[q];
         found.tensor[f][i] = jet.tensor;
         found.density[f][i] = static_cast<float>(squared_norm(jet.tensor));
-        found.variance[q][i] = static_cast<float>(each * density_variance(field) / size6);
+        found.variance[q][i] = static_cast<float>(each * density_variance(field) / (size2 * size4));
         found.trace[q][i] = static_cast<float>(each * shape_variance(field) / size4);
         found.residual[q][i] =
-            static_cast<float>(level_.members * field.residual / std::max(free, 0.1 * fit.weight) * size * size);
+            static_cast<float>(level_.members * field.residual / std::max(free, 0.1 * fit.weight) * size2);
         if (q == 1) continue;
         found.normal[i] = jet.normal;
         // A foot that runs away is no foot.
         const Vec3 step = fit.view.foot + size * field.c[0] * fit.frame.n;
-        if (squared(step) < 0.25 * size * size && finite(jet.normal)) {
+        if (squared(step) < 0.25 * size2 && finite(jet.normal)) {
             store(level_.foot.data() + 3 * i, level_.foot_of(i) + step);
             level_.normal[i] = jet.normal;
         }
     }
 }
 
-void RungFits::average(Rung& found) {
+void RungFits::average(int rung, Rung& found) {
+    const std::size_t k = window(rung), stride = samples_stride(k), count = (k + stride - 1) / stride;
+    const auto& quadric = found.tensor[static_cast<int>(Family::quadric)];
+    std::vector<SurfaceSample> samples(level_.count());
+    const auto known = [&](std::size_t i) { return active_[i] && std::isfinite(found.size[i]); };
     for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
-        for (; i < last; ++i)
-            if (active_[i] && std::isfinite(found.density[static_cast<int>(Family::quadric)][i]))
-                average_element(i, found);
+        for (; i < last; ++i) {
+            if (!known(i)) continue;
+            const Vec3 normal = found.normal[i];
+            const Symmetric3& t = quadric[i];
+            samples[i] = {{normal.x, normal.y, normal.z},
+                          {level_.foot[3 * i], level_.foot[3 * i + 1], level_.foot[3 * i + 2]},
+                          {t.xx, t.xy, t.xz, t.yy, t.yz, t.zz}};
+        }
+    });
+    for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
+        std::size_t who[fit_lanes];
+        int filled = 0;
+        for (; i < last; ++i) {
+            if (known(i)) who[filled++] = i;
+            if (filled == fit_lanes || (filled > 0 && i + 1 == last))
+                average_elements(who, std::exchange(filled, 0), static_cast<int>(count), samples, found);
+        }
     });
 }
 
-/// Over the samples within half the neighbours' reach and within all of it, with the weights 1 − (d/h)²: the mean of
-/// the quadrics' shape operators, and the slopes of their normals over their feet.
-void RungFits::average_element(std::size_t i, Rung& found) {
-    const auto& quadric = found.tensor[static_cast<int>(Family::quadric)];
-    const Vec3 normal = found.normal[i], foot = level_.foot_of(i);
-    const Frame frame = frame_about(normal);
-    const double unit = 1 / double(found.size[i]);
-    const double reach[2] = {double(found.half_size[i]) * found.half_size[i], double(found.size[i]) * found.size[i]};
-    Symmetric3 sum[2] = {quadric[i], quadric[i]};
-    double weights[2] = {1, 1};
-    SlopeFit slopes[2];
-    const std::int32_t* row = samples_.data() + i * most_samples;
-    for (int s = 0; s < most_samples && row[s] >= 0; ++s) {
-        const auto other = static_cast<std::size_t>(row[s]);
-        if (other == i || !std::isfinite(found.size[other])) continue;
-        const double along = dot(found.normal[other], normal);
-        // Other sheets and far sides look elsewhere.
-        if (!(std::abs(along) >= one_sheet)) continue;
-        const double sign = along < 0 ? -1 : 1;
-        const Vec3 there = sign * found.normal[other], d = level_.foot_of(other) - foot;
-        const double away = squared(d);
-        if (away >= reach[1]) continue;
-        const Symmetric3 tensor = carried(quadric[other], there, normal);
-        for (int m = 0; m < 2; ++m) {
-            const double weight = 1 - away / reach[m];
-            if (!(weight > 0)) continue;
-            add(sum[m], sign * weight, tensor), weights[m] += weight;
-            slopes[m].add(unit * dot(d, frame.u), unit * dot(d, frame.v), dot(there, frame.u), dot(there, frame.v),
-                          weight);
-        }
+/// Over the samples within half the neighbours' reach and within all of it.
+void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
+                                const std::vector<SurfaceSample>& samples, Rung& found) {
+    LaneCentres centres;
+    centres.count = count;
+    for (int l = 0; l < filled; ++l) {
+        const std::size_t i = who[l];
+        const double half = double(found.half_size[i]), whole = double(found.size[i]);
+        centres.set(l, frame_about(found.normal[i]), level_.foot_of(i));
+        centres.unit[l] = 1 / whole;
+        centres.reach[0][l] = half * half, centres.reach[1][l] = whole * whole;
+        centres.samples[l] = samples_.data() + i * most_samples;
     }
-    for (int m = 0; m < 2; ++m) {
-        const auto mean = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
+    LaneAverages windows[2];
+    best_lane_averages()(samples.data(), centres, windows);
+    for (int l = 0; l < filled; ++l) keep(who[l], l, windows, centres, found);
+}
+
+/// The mean of the quadrics' shape operators, the element's own with weight 1 among them, and the slopes of their
+/// normals over their feet.
+void RungFits::keep(std::size_t i, int lane, const LaneAverages (&windows)[2], const LaneCentres& centres,
+                    Rung& found) {
+    const Frame frame = frame_about(found.normal[i]);
+    const double unit = centres.unit[lane];
+    const auto in_plane = [&](double uu, double uv, double vv) {
         Symmetric3 tensor;
-        add(tensor, 1 / weights[m], sum[m]);
+        add_product(tensor, uu, frame.u, frame.u);
+        add_product(tensor, 2 * uv, frame.u, frame.v);
+        add_product(tensor, vv, frame.v, frame.v);
+        return tensor;
+    };
+    for (int m = 0; m < 2; ++m) {
+        const LaneAverages& window = windows[m];
+        const auto mean = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
+        const double share = 1 / (1 + window.weight[lane]);
+        Symmetric3 tensor;
+        add(tensor, share, found.tensor[static_cast<int>(Family::quadric)][i]);
+        add(tensor, share, in_plane(window.tensor[0][lane], window.tensor[1][lane], window.tensor[2][lane]));
         found.tensor[mean][i] = tensor;
         found.density[mean][i] = static_cast<float>(squared_norm(tensor));
+        const SlopeFit slopes = window.slopes(lane);
         Slopes fit;
-        if (slopes[m].count() < 10 || !slopes[m].solve<5>(fit)) continue;
+        if (slopes.count() < 10 || !slopes.solve<5>(fit)) continue;
         const auto slope = static_cast<int>(m == 0 ? Family::half_slope : Family::slope);
-        Symmetric3& shape = found.tensor[slope][i];
-        add_product(shape, unit * fit.s[0][0], frame.u, frame.u);
-        add_product(shape, unit * (fit.s[0][1] + fit.s[1][0]), frame.u, frame.v);
-        add_product(shape, unit * fit.s[1][1], frame.v, frame.v);
+        const Symmetric3 shape =
+            in_plane(unit * fit.s[0][0], unit * (0.5 * (fit.s[0][1] + fit.s[1][0])), unit * fit.s[1][1]);
+        found.tensor[slope][i] = shape;
         found.density[slope][i] = static_cast<float>(squared_norm(shape));
         // Over a disc filled evenly Σ w u² = n h² / 12.
-        const double even = 24 / (slopes[m].count() * reach[m] * unit * unit);
+        const double even = 24 / (slopes.count() * centres.reach[m][lane] * unit * unit);
         found.spread[m][i] = static_cast<float>(std::max(1.0, (fit.covariance[0][0] + fit.covariance[1][1]) / even));
     }
 }

@@ -10,6 +10,7 @@
 
 #include "fitted_curvature.h"
 #include "gaussmap/neighbors.h"
+#include "lane_averages.h"
 #include "pyramid.h"
 #include "scale_ladder.h"
 #include "window_fits.h"
@@ -72,11 +73,19 @@ class RungFits {
     Rung step(int rung);
 
   private:
+    /// Elements in a window.
+    std::size_t window(int rung) const {
+        return static_cast<std::size_t>(rung_neighbors(rung) / static_cast<int>(level_.members));
+    }
+    /// Of how many in a window one is a sample.
+    static std::size_t samples_stride(std::size_t window) { return (window + most_samples - 1) / most_samples; }
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
     void keep(std::size_t i, const WindowFit& fit, Rung& found);
-    void average(Rung& found);
-    void average_element(std::size_t i, Rung& found);
+    void average(int rung, Rung& found);
+    void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
+                          const std::vector<SurfaceSample>& samples, Rung& found);
+    void keep(std::size_t i, int lane, const LaneAverages (&windows)[2], const LaneCentres& centres, Rung& found);
 
     static constexpr int most_samples = 96;  ///< of an average
 
@@ -85,7 +94,7 @@ class RungFits {
     const std::vector<std::uint8_t>& active_;
     Execution run_;
     NeighborIndex index_;
-    std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 beyond
+    std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 for itself
 };
 
 }  // namespace gaussmap

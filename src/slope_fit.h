@@ -20,6 +20,24 @@ struct Slopes {
 
 class SlopeFit {
   public:
+    static constexpr int most = 5;     ///< terms: u², uv, v², u, v
+    static constexpr int powers = 14;  ///< monomials of degrees 1 to 4: u, v, u², uv, v², u³, …
+
+    /// From sums that were made elsewhere, over `count` data.
+    /// \param power   weighted sums of the powers.
+    /// \param slope   of the terms times normal_u and times normal_v.
+    /// \param square  of normal_u² + normal_v².
+    void set(const double (&power)[powers], const double (&slope)[most][2], double square, int count) {
+        constexpr int degree[most] = {2, 2, 2, 1, 1}, of_v[most] = {0, 1, 2, 0, 1};
+        const auto sum = [&](int d, int j) { return power[d * (d + 1) / 2 + j - 1]; };
+        for (int i = 0; i < most; ++i) {
+            for (int j = 0; j <= i; ++j) a_[i][j] = sum(degree[i] + degree[j], of_v[i] + of_v[j]);
+            y_[i][0] = slope[i][0], y_[i][1] = slope[i][1], y_[i][2] = sum(degree[i], of_v[i]);
+        }
+        total_ = square;
+        count_ = count;
+    }
+
     /// \param u, v  of size 1 at most, about.
     void add(double u, double v, double normal_u, double normal_v, double weight = 1) {
         const double m[most] = {u * u, u * v, v * v, u, v};
@@ -68,7 +86,7 @@ class SlopeFit {
     }
 
   private:
-    static constexpr int most = 5, sides = 3;
+    static constexpr int sides = 3;
     static constexpr double rank_tolerance = 1e-10;
 
     double a_[most][most] = {}, y_[most][sides] = {}, total_ = 0;

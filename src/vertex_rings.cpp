@@ -1,6 +1,7 @@
 #include "vertex_rings.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "check.h"
 #include "eigen3.h"
@@ -9,6 +10,9 @@
 
 namespace gaussmap {
 namespace {
+
+/// Neighbours that are read at once, whether or not there are as many.
+constexpr std::size_t at_once = 8;
 
 /// Call body(from, to) for both ways along every edge of every usable face.
 template <class Body>
@@ -83,59 +87,69 @@ VertexRings::VertexRings(Points vertices, Triangles faces)
             last - first < 2 * (end - neighbor_.begin() - static_cast<std::ptrdiff_t>(offset_[v])) || first == last;
     }
     offset_.back() = static_cast<std::size_t>(end - neighbor_.begin());
-    neighbor_.resize(offset_.back());
+    neighbor_.resize(offset_.back() + at_once, 0);
     neighbor_.shrink_to_fit();
 }
 
 void VertexRings::Room::begin(std::size_t vertices, std::int32_t vertex) {
-    for (const std::int32_t met : met_) known_[static_cast<std::size_t>(met)] = 0;
+    for (std::size_t j = 0; j < met_count_; ++j) known_[static_cast<std::size_t>(met_[j])] = 0;
     known_.resize(vertices, 0);
-    met_.assign(1, vertex);
+    if (met_.empty()) met_.resize(1);
+    met_[0] = vertex;
+    met_count_ = 1;
     known_[static_cast<std::size_t>(vertex)] = 1;
 }
 
-/// Those that are not met yet; without a branch on which they are, as no processor could guess.
-void VertexRings::Room::enter(std::span<const std::int32_t> around) {
-    std::size_t count = met_.size();
-    met_.resize(count + around.size());
-    for (const std::int32_t vertex : around) {
-        std::uint8_t& known = known_[static_cast<std::size_t>(vertex)];
-        met_[count] = vertex;
-        count += known ^ 1U;
-        known = 1;
-    }
-    met_.resize(count);
+/// Those that are not met yet. Without a branch on which they are, nor on how many there are if those are few, as no
+/// processor could guess.
+void VertexRings::Room::enter(const std::int32_t* around, std::size_t degree) {
+    const std::size_t most = std::max(degree, at_once);
+    if (met_.size() < met_count_ + most) met_.resize(2 * (met_count_ + most));
+    std::int32_t* const met = met_.data();
+    std::uint8_t* const known = known_.data();
+    std::size_t count = met_count_;
+    const auto take = [&](std::size_t j) {
+        const std::int32_t vertex = around[j];
+        const auto fresh = static_cast<std::uint8_t>((known[vertex] ^ 1U) & static_cast<unsigned>(j < degree));
+        met[count] = vertex;
+        known[vertex] |= fresh;
+        count += fresh;
+    };
+    for (std::size_t j = 0; j < at_once; ++j) take(j);
+    for (std::size_t j = at_once; j < degree; ++j) take(j);
+    met_count_ = count;
 }
 
 /// Nearest first, ties by index, as far as the first `wanted` of all; by buckets, since squared distances on a surface
-/// are spread evenly.
+/// are spread evenly, and then by insertion, since hardly any is far from its place.
 void VertexRings::Room::sort(std::size_t from, std::size_t wanted) {
     const auto nearer = [](const Met& a, const Met& b) {
         return a.squared < b.squared || (a.squared == b.squared && a.index < b.index);
     };
-    constexpr std::size_t few = 64, share = 4;
+    constexpr std::size_t few = 16;
     constexpr double least = 1e-290;  // whose inverse is finite
     const std::size_t count = nearest_.size() - from;
-    const auto begin = nearest_.begin() + static_cast<std::ptrdiff_t>(from);
+    Met* const begin = nearest_.data() + from;
+    Met* end = begin + count;
     double farthest = 0;
-    for (auto met = begin; met != nearest_.end(); ++met) farthest = std::max(farthest, met->squared);
-    if (count < few || farthest < least) return std::sort(begin, nearest_.end(), nearer);
-
-    const std::size_t buckets = count / share;
-    const auto bucket = [&, per = static_cast<double>(buckets - 1) / farthest](const Met& met) {
-        return static_cast<std::size_t>(met.squared * per);
-    };
-    ends_.assign(buckets + 1, 0);
-    for (auto met = begin; met != nearest_.end(); ++met) ++ends_[bucket(*met) + 1];
-    for (std::size_t b = 1; b <= buckets; ++b) ends_[b] += ends_[b - 1];
-    unsorted_.assign(begin, nearest_.end());
-    for (const Met& met : unsorted_) begin[static_cast<std::ptrdiff_t>(ends_[bucket(met)]++)] = met;
-    // What is wanted, by insertion: hardly anything lies far from its place.
-    const auto end = begin + static_cast<std::ptrdiff_t>(*std::find_if(
-                                 ends_.begin(), ends_.end() - 2, [&](std::size_t e) { return from + e >= wanted; }));
-    for (auto met = begin; met != end; ++met) {
+    for (const Met* met = begin; met != end; ++met) farthest = std::max(farthest, met->squared);
+    if (count >= few && farthest >= least) {
+        const auto bucket = [per = static_cast<double>(count - 1) / farthest](const Met& met) {
+            return static_cast<std::size_t>(met.squared * per);
+        };
+        ends_.assign(count, 0);
+        for (const Met* met = begin; met != end; ++met) ++ends_[bucket(*met)];
+        std::uint32_t before = 0;
+        for (std::uint32_t& e : ends_) before += std::exchange(e, before);
+        unsorted_.assign(begin, end);
+        for (const Met& met : unsorted_) begin[ends_[bucket(met)]++] = met;
+        const auto enough =
+            std::find_if(ends_.begin(), ends_.end() - 1, [&](std::uint32_t e) { return from + e >= wanted; });
+        end = begin + *enough;
+    }
+    for (Met* met = begin; met != end; ++met) {
         const Met moved = *met;
-        auto to = met;
+        Met* to = met;
         for (; to != begin && nearer(moved, to[-1]); --to) *to = to[-1];
         *to = moved;
     }
@@ -146,14 +160,14 @@ void VertexRings::meet(std::size_t vertex, std::size_t enough, std::size_t hub, 
                        std::size_t (&inner)[2]) const {
     room.begin(vertices_.count, static_cast<std::int32_t>(vertex));
     std::size_t rings = 0;
-    for (std::size_t at = 0; at < room.met_.size() && room.met_.size() <= enough; ++rings) {
-        for (const std::size_t end = room.met_.size(); at < end; ++at) {
+    for (std::size_t at = 0; at < room.met_count_ && room.met_count_ <= enough; ++rings) {
+        for (const std::size_t end = room.met_count_; at < end; ++at) {
             const auto v = static_cast<std::size_t>(room.met_[at]);
             // A fan about a hub would put all of its rim into every search.
             if (v != vertex && degree(v) > hub) continue;
-            room.enter(around(v));
+            room.enter(neighbor_.data() + offset_[v], degree(v));
         }
-        for (std::size_t r = rings; r < 2; ++r) inner[r] = room.met_.size();
+        for (std::size_t r = rings; r < 2; ++r) inner[r] = room.met_count_;
     }
 }
 
@@ -171,7 +185,7 @@ void VertexRings::nearest(std::size_t vertex, int k, Room& room, std::int32_t* r
     const RingMetric metric(room.rings_, border);
     room.nearest_.clear();
     std::size_t sorted = 0;
-    for (std::size_t j = 0; j < room.met_.size(); ++j) {
+    for (std::size_t j = 0; j < room.met_count_; ++j) {
         const Vec3 d = load(vertices_[room.met_[j]]) - here;
         if (squared(d) > 0) room.nearest_.push_back({metric(d), room.met_[j]});
         if (j + 1 == inner[0] || j + 1 == inner[1]) room.sort(sorted, wanted), sorted = room.nearest_.size();

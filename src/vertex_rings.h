@@ -36,13 +36,14 @@ class VertexRings {
             std::int32_t index;
         };
         void begin(std::size_t vertices, std::int32_t vertex);
-        void enter(std::span<const std::int32_t> around);
+        void enter(const std::int32_t* around, std::size_t degree);
         void sort(std::size_t from, std::size_t wanted);
         std::vector<std::uint8_t> known_;  ///< whether a vertex is among those met
-        std::vector<std::int32_t> met_;    ///< in the order of the rings
-        std::vector<Vec3> rings_;          ///< the first two, as differences
+        std::vector<std::int32_t> met_;    ///< in the order of the rings; as long as was ever needed
+        std::size_t met_count_ = 0;
+        std::vector<Vec3> rings_;  ///< the first two, as differences
         std::vector<Met> nearest_, unsorted_;
-        std::vector<std::size_t> ends_;  ///< of buckets
+        std::vector<std::uint32_t> ends_;  ///< of buckets
     };
 
     /// Up to k vertices met on whole rings about the vertex, at least 5/4 k where there are: those of the first ring,
@@ -57,7 +58,7 @@ class VertexRings {
 
     Points vertices_;
     std::vector<std::size_t> offset_;
-    std::vector<std::int32_t> neighbor_;
+    std::vector<std::int32_t> neighbor_;  ///< and as many more as are read at once
     std::vector<std::uint8_t> open_;
 };
 
