@@ -24,7 +24,6 @@ SHELL := /bin/bash
 export OMP_WAIT_POLICY := passive
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
-THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling test_decimate
 PROGRAM := build/release/gaussmap
 PYTHON := build/python/bin/python
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
@@ -79,10 +78,10 @@ test-asan: setup
 	ctest --preset asan --no-tests=error -j 2
 	GAUSSMAP=build/asan/gaussmap $(PYTEST) tests/cli
 
-# Data races: the tests that run with several threads.
+# Data races: the tests that run with several threads, told by their names.
 test-tsan: setup
 	@cmake --preset tsan >/dev/null
-	@cmake --build --preset tsan --target $(THREADED)
+	@cmake --build --preset tsan
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
 
 # The wheel, as `pip install .` makes it; its environment has what the tests need besides. The compiler is called as the
