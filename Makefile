@@ -7,6 +7,7 @@
 #   make lint            formatting and static analysis
 #   make bench           measurements against peers (not tests)
 #   make bench-accuracy  accuracy against peers on analytic surfaces (hours; QUICK=1: one seed)
+#   make bench-cloud     the parts of a program built like the author's against libigl's own
 #   make bench-distance  closest points and distances against libigl, Open3D, MeshLab (IN="a.ply b.ply" adds yours)
 #   make bench-decimate  decimation against ten peers, 8 meshes to 50 … 1 % (an hour)
 #   make bench-python    the package against the library, and against peers in Python
@@ -23,7 +24,6 @@ SHELL := /bin/bash
 export OMP_WAIT_POLICY := passive
 PYTEST := /usr/bin/python3 -m pytest -q -n 2 -p no:cacheprovider
 FUZZ_SECONDS ?= 60
-THREADED := test_types test_curvature test_cloud test_normals test_neighbors test_picture test_io test_distance test_sampling test_decimate
 PROGRAM := build/release/gaussmap
 PYTHON := build/python/bin/python
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
@@ -34,7 +34,7 @@ packages = packages.txt
 missing = $$(cat $(packages) | grep -v '^\#' | while read -r p; do dpkg -s "$$p" >/dev/null 2>&1 || command -v "$$p" >/dev/null || echo "$$p"; done)
 sudo = $$([ "$$(id -u)" = 0 ] || echo sudo)
 
-.PHONY: demo test test-release test-cli test-browser test-asan test-tsan test-python python-wheel python-stubs wasm bench-browser lint bench bench-accuracy bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
+.PHONY: demo test test-release test-cli test-browser test-asan test-tsan test-python python-wheel python-stubs wasm bench-browser lint bench bench-accuracy bench-cloud bench-distance bench-decimate bench-python bench-real paper fuzz clean setup release
 
 setup:
 	@missing="$(missing)"; if [ -n "$$missing" ]; then echo "Installing" $$missing; \
@@ -78,10 +78,10 @@ test-asan: setup
 	ctest --preset asan --no-tests=error -j 2
 	GAUSSMAP=build/asan/gaussmap $(PYTEST) tests/cli
 
-# Data races: the tests that run with several threads.
+# Data races: the tests that run with several threads, told by their names.
 test-tsan: setup
 	@cmake --preset tsan >/dev/null
-	@cmake --build --preset tsan --target $(THREADED)
+	@cmake --build --preset tsan
 	ctest --preset tsan --no-tests=error -j 2 -R 'Threads|Parallel'
 
 # The wheel, as `pip install .` makes it; its environment has what the tests need besides. The compiler is called as the
@@ -130,6 +130,11 @@ bench-accuracy: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_accuracy
 	/usr/bin/python3 bench/accuracy.py build/bench $(if $(QUICK),--quick)
+
+bench-cloud: setup
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench --target bench_cloud_speed
+	/usr/bin/python3 bench/cloud.py build/bench
 
 bench-distance: packages = packages.txt bench/packages.txt
 bench-distance: setup

@@ -12,6 +12,14 @@
 
 namespace support {
 
+/// Everything takes ten times as long and more: where a test draws much at random, or goes through many files, a part
+/// is enough to walk every path.
+#ifdef GAUSSMAP_SANITIZED
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+
 inline std::filesystem::path data_folder() {
     return GAUSSMAP_DATA;
 }

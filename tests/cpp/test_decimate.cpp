@@ -126,8 +126,10 @@ TEST(Decimate, BestIsNearerThanQemAndQemThanEdge) {
 TEST(DecimateThreads, SameBitsForAnyNumberOfThreads) {
     const Surface s = gaussmap::bumpy_sphere(1, 0.2, 5, 5, {0.2, 0, 3});
     for (const Way& way : ways) {
+        if (support::sanitized && !way.weights) continue;
         DecimateOptions options = to(1500, way);
-        options.measure = options.sources = true;
+        options.measure = !support::sanitized || &way == ways;
+        options.sources = true;
         options.run.threads = 1;
         const Decimation one = decimate(s.vertices, s.faces, options);
         options.run.threads = 3;

@@ -23,7 +23,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Triangulation = CGAL::Delaunay_triangulation_2<Kernel>;
 using Point = Kernel::Point_2;
 
-constexpr std::size_t k = 20, count = 20000;
+constexpr std::size_t k = 20, count = support::sanitized ? 1000 : 20000;
 
 Point point(Plane p) {
     return {p[0], p[1]};
