@@ -26,7 +26,7 @@ Vec3 WindowFits::principal(int lane) {
 /// Settle views on quadrics, which noise sways least. `residuals` are what those left before the last turn, infinite
 /// where nothing is determined.
 void WindowFits::settle_on_quadric(const LaneFitKernel& kernel, int turns, Views& views, Residuals& residuals) {
-    bool on[fit_lanes];
+    bool on[fit_lanes] = {};
     for (int l = 0; l < filled_; ++l) residuals[l] = infinity, on[l] = finite(views[l].normal);
     for (; turns > 0; --turns) {
         for (int l = 0; l < filled_; ++l)
