@@ -19,8 +19,8 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Variance of an interpolating quartic's density relative to that of equal weights.
 constexpr double interpolation_variance = 8;
-/// Errors of the fits relative to their measured change, at most about: of quartics 0.15 to 0.6, of quadrics 1.
-constexpr double error_share[] = {0.5, 0.5, 1};
+/// Errors of the fits relative to their measured change, most of them: of quartics 0.15 to 0.6, of quadrics 1.
+constexpr double error_share[] = {0.45, 0.45, 0.9};
 /// Noise that moves the density by less than this is no matter.
 constexpr double negligible = 1e-4;
 /// Residuals with less noise than this part are those of a clean surface.

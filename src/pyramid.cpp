@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "frame.h"
@@ -59,8 +60,9 @@ class LocalFit {
     bool quadric(std::array<double, values>& at_origin) const { return count_ >= 9 && solve<6>(at_origin); }
     /// The mean where the data do not determine a plane well.
     void plane(std::array<double, values>& at_origin) const {
-        if (count_ < 5 || !solve<3>(at_origin)) solve<1>(at_origin);
+        if (count_ < 5 || !solve<3>(at_origin)) mean(at_origin);
     }
+    void mean(std::array<double, values>& at_origin) const { solve<1>(at_origin); }
 
   private:
     template <int Terms>
@@ -88,18 +90,20 @@ class LocalFit {
 
 /// Errors are worlds apart where one squared is this many times the other.
 constexpr float apart = 9;
+/// What weighs less than this part of what there is changes nothing that matters.
+constexpr double negligible = 1e-3;
 
-enum class Order { quadric, quadric_or_plane, plane };
+enum class Order { quadric, quadric_or_plane, mean };
 
-/// What is known about the element `from`, interpolated among it and its neighbours at a foot nearby, put in
-/// place i.
-void interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot, Order order, Measured& result,
-                 std::size_t i) {
+/// What is known about the element `from`, interpolated among it and its neighbours at a foot nearby; nothing where
+/// they do not tell.
+std::optional<Estimate> interpolate(const Level& level, const Measured& known, std::size_t from, Vec3 foot,
+                                    Order order) {
     const Vec3 normal = known.normal[from];
     const Frame frame = frame_about(normal);
     const double radius2 = reach(level, from);
     // Far away nothing is known.
-    if (squared(level.foot_of(from) - foot) > 16 * radius2) return;
+    if (squared(level.foot_of(from) - foot) > 16 * radius2) return {};
     const double unit = 1 / std::sqrt(std::max(radius2, std::numeric_limits<double>::min()));
     LocalFit fit;
     const auto take = [&](std::size_t g) {
@@ -119,15 +123,14 @@ void interpolate(const Level& level, const Measured& known, std::size_t from, Ve
     for (std::size_t j = 0; j < ElementGraph::degree && level.graph[from][j] >= 0; ++j)
         take(static_cast<std::size_t>(level.graph[from][j]));
     std::array<double, LocalFit::values> value;
-    const bool curved = order != Order::plane && fit.quadric(value);
-    if (!curved && order == Order::quadric) return;
-    if (!curved) fit.plane(value);
+    const bool curved = order != Order::mean && fit.quadric(value);
+    if (!curved && order == Order::quadric) return {};
+    if (order == Order::mean) fit.mean(value);
+    if (order == Order::quadric_or_plane && !curved) fit.plane(value);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
-    result.density[i] = std::max(0.0, value[0]);
-    result.risk[i] = known.risk[from];
-    result.normal[i] = turned;
-    result.tensor[i] = carried({value[1], value[2], value[3], value[4], value[5], value[6]}, normal, turned);
-    result.choice[i] = known.choice[from];
+    const Symmetric3 tensor = {value[1], value[2], value[3], value[4], value[5], value[6]};
+    return Estimate{std::max(0.0, value[0]),         known.risk[from],  known.error[from], turned,
+                    carried(tensor, normal, turned), known.choice[from]};
 }
 
 /// The member whose foot is nearest to the mean of all feet.
@@ -191,15 +194,42 @@ Level coarsened(Level& level, const Execution& run) {
     return above;
 }
 
+void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measured) {
+    const bool best = estimate.risk < measured.risk[i];
+    const double so_far = measured.weight[i], part = weight / (weight + so_far);
+    if (!(part > 0)) return;
+    if (so_far > 0) {
+        const Vec3 normal = best ? estimate.normal : measured.normal[i];
+        const auto seen_along = [&](const Symmetric3& tensor, Vec3 from, double share, Symmetric3& sum) {
+            const double sign = dot(from, normal) < 0 ? -1 : 1;
+            add(sum, sign * share, carried(tensor, sign * from, normal));
+        };
+        Symmetric3 sum;
+        seen_along(measured.tensor[i], measured.normal[i], 1 - part, sum);
+        seen_along(estimate.tensor, estimate.normal, part, sum);
+        measured.tensor[i] = sum;
+        measured.density[i] += part * (estimate.density - measured.density[i]);
+    } else {
+        measured.tensor[i] = estimate.tensor;
+        measured.density[i] = estimate.density;
+    }
+    measured.weight[i] += weight;
+    if (!best) return;
+    measured.risk[i] = estimate.risk, measured.error[i] = estimate.error;
+    measured.normal[i] = estimate.normal;
+    measured.choice[i] = estimate.choice;
+}
+
 void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run) {
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
             const auto parent = static_cast<std::size_t>(level.parent[i]);
-            if (!(coarse.risk[parent] < fine.risk[i])) continue;
+            if (!(coarse.weight[parent] > negligible * fine.weight[i])) continue;
             // At the edge of a region that went on climbing too little is around for good interpolation.
             const bool better = apart * coarse.risk[parent] < fine.risk[i];
-            interpolate(above, coarse, parent, level.foot_of(i), better ? Order::quadric_or_plane : Order::quadric,
-                        fine, i);
+            const auto found =
+                interpolate(above, coarse, parent, level.foot_of(i), better ? Order::quadric_or_plane : Order::quadric);
+            if (found) mix(*found, coarse.weight[parent], i, fine);
         }
     });
 }
@@ -213,8 +243,13 @@ void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured
                 const auto other = static_cast<std::size_t>(level.graph[i][j]);
                 if (lends[other] && known.risk[other] < known.risk[best]) best = other;
             }
-            if (apart * known.risk[best] < known.risk[i])
-                interpolate(level, known, best, level.foot_of(i), Order::plane, measured, i);
+            // Only who does not know the size of it asks others.
+            const bool hopeless = known.risk[i] > 0.1 * known.density[best] * known.density[best];
+            if (!hopeless || !(apart * known.risk[best] < known.risk[i])) continue;
+            const auto lent = interpolate(level, known, best, level.foot_of(i), Order::mean);
+            if (!lent) continue;
+            measured.weight[i] = 0;
+            mix(*lent, known.weight[best], i, measured);
         }
     });
 }

@@ -36,14 +36,29 @@ Level coarsened(Level& level, const Execution& run);
 /// What was measured at the elements of a level.
 struct Measured {
     std::vector<double> density;
-    std::vector<float> risk;     ///< expected squared error of the density; infinite where nothing was measured
+    std::vector<float>
+        risk;  ///< what the density is chosen by: its squared error, feared; infinite where there is none
+    std::vector<float> error;    ///< squared, expected
     std::vector<double> weight;  ///< what all that was mixed counts
     std::vector<Vec3> normal;
     std::vector<Symmetric3> tensor;
     std::vector<std::uint8_t> choice;  ///< of the smallest risk
 };
 
-/// Give the elements of a level what the next one above promises to know better, by interpolation between feet.
+/// What a fit makes of an element.
+struct Estimate {
+    double density;
+    float risk, error;  ///< as of `Measured`
+    Vec3 normal;
+    Symmetric3 tensor;
+    std::uint8_t choice;
+};
+
+/// Mix an estimate into what an element has: near the best one several are about as good, and the choice among them is
+/// noise. A weight of 0 changes nothing.
+void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measured);
+
+/// Mix what the next level above knows into the elements of a level, interpolated between feet.
 void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run);
 
 /// Give elements that know far worse than a neighbour that lends what that one knows, interpolated likewise.

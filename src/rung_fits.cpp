@@ -86,7 +86,8 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
 
 /// In the views from the rung below, and while windows are small in fresh ones too.
 void RungFits::fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found) {
-    constexpr int rungs_of_fresh_views = 6;
+    // The rings of a mesh lie around the vertex even where noise is as thick as the spacing.
+    const int rungs_of_fresh_views = elements_.connected ? 3 : 6;
     Vec3 normals[fit_lanes];
     for (int l = 0; l < windows.filled(); ++l) normals[l] = rung > 0 ? level_.normal[who[l]] : Vec3{NAN, NAN, NAN};
     windows.fit(normals, rung < rungs_of_fresh_views);

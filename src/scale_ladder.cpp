@@ -39,7 +39,7 @@ struct Traits {
     double bias;
 };
 constexpr std::array<Traits, families> traits = {
-    {{1, 0.42, 0.38}, {0.24, 0.31, 0.38}, {0.08, 0.35, 0.36}, {0.20, 0.30, 0.36}, {0.09, 0.28, 0.32}, {1, 0.50, 0.6}}};
+    {{1, 0.42, 0.38}, {0.24, 0.31, 0.38}, {0.08, 0.35, 0.36}, {0.20, 0.30, 0.36}, {0.09, 0.28, 0.32}, {1, 0.50, 0.78}}};
 
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
@@ -89,6 +89,7 @@ Measured nothing_measured(std::size_t count) {
     Measured measured;
     measured.density.assign(count, nan);
     measured.risk.assign(count, never);
+    measured.error = measured.risk;
     measured.weight.assign(count, 0);
     measured.normal.assign(count, Vec3{nan, nan, nan});
     measured.tensor.resize(count);
@@ -144,49 +145,16 @@ void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, 
 
 /// Squared changes relative to those expected of noise: what is usual over a wide region and near by, what is surely
 /// more than noise, and the most that counts, as the tails of noise are heavy.
-constexpr double usual = 1.2, usual_near = 2, sure = 2.5, most_surprising = 50;
+constexpr float usual = 1.2F, usual_near = 2, sure = 2.5F, sure_near = 4, most_surprising = 50;
+/// What the families of second order smooth away alike, no change between their rungs tells. So against them half of
+/// the risk of quartics counts.
+constexpr float quartic_share = 0.5F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
-struct Candidate {
-    double density;
-    float risk;
-    Vec3 normal;
-    Symmetric3 tensor;
-    std::uint8_t choice;
-};
-
-/// What a candidate counts; infinite risks count nothing.
+/// What an estimate counts, by the inverse fourth power of its risk; infinite risks count nothing.
 double weight_of(float risk) {
-    return std::pow(static_cast<double>(risk), -3);
-}
-
-/// Mix a candidate into what an element has, by the inverse cubes of their expected squared errors: near the best one
-/// several are about as good, and the choice among them is noise.
-void mix(const Candidate& candidate, std::size_t i, Measured& measured) {
-    const bool best = candidate.risk < measured.risk[i];
-    const double weight = weight_of(candidate.risk), so_far = measured.weight[i], part = weight / (weight + so_far);
-    if (!(part > 0)) return;
-    if (so_far > 0) {
-        const Vec3 normal = best ? candidate.normal : measured.normal[i];
-        const auto seen_along = [&](const Symmetric3& tensor, Vec3 from, double share, Symmetric3& sum) {
-            const double sign = dot(from, normal) < 0 ? -1 : 1;
-            add(sum, sign * share, carried(tensor, sign * from, normal));
-        };
-        Symmetric3 sum;
-        seen_along(measured.tensor[i], measured.normal[i], 1 - part, sum);
-        seen_along(candidate.tensor, candidate.normal, part, sum);
-        measured.tensor[i] = sum;
-        measured.density[i] += part * (candidate.density - measured.density[i]);
-    } else {
-        measured.tensor[i] = candidate.tensor;
-        measured.density[i] = candidate.density;
-    }
-    measured.weight[i] += weight;
-    if (!best) return;
-    measured.risk[i] = candidate.risk;
-    measured.normal[i] = candidate.normal;
-    measured.choice[i] = candidate.choice;
+    return std::pow(static_cast<double>(risk), -4);
 }
 
 /// The density of a family, less what noise adds to it.
@@ -221,7 +189,7 @@ Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
         for (std::size_t i = 0; i < count; ++i) {
             const double squared = std::pow(unbiased(upper, family, noise, i) - unbiased(lower, family, noise, i), 2);
             changes.square[family][i] =
-                static_cast<float>(std::min(squared / (known * changes.variance[family][i]), most_surprising));
+                static_cast<float>(std::min<double>(squared / (known * changes.variance[family][i]), most_surprising));
         }
     }
     diffuse(squares, level_.graph, near_reach, run_);
@@ -248,14 +216,19 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
         const double expected = known.change * variance[i];
-        const double more = std::max<double>(change[i] - usual, near[i] - usual_near);
-        const double bias = std::max<double>(expected * more / (known.bias * known.bias), known_bias[i]);
-        const auto risk = static_cast<float>(variance[i] + std::max(0.0, bias));
+        const double by_noise = variance[i], to_bias = expected / (known.bias * known.bias);
+        const auto squared_error = [&](double more) {
+            return static_cast<float>(by_noise + std::max<double>(to_bias * more, known_bias[i]));
+        };
+        // A choice had better fear that all of the change is bias; an error told, only what is not usual of noise.
+        const float risk = squared_error(std::max(change[i], near[i] - 1));
+        const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}));
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything.
         const double density = lower.density[family][i];
-        if (variance[i] < 0.1 * density * density && more > sure - usual) {
-            const double step = std::sqrt(expected * (more - (sure - usual)));
+        const double surely = std::max(change[i] - sure, near[i] - sure_near);
+        if (variance[i] < 0.1 * density * density && surely > 0) {
+            const double step = std::sqrt(expected * surely);
             known_bias[i] =
                 static_cast<float>(std::pow(std::max(step / known.bias, std::sqrt(double(known_bias[i]))) + step, 2));
         }
@@ -265,9 +238,10 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
             if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
-        mix({std::max(0.0, unbiased(lower, family, noise, i)), risk, lower.normal[i], lower.tensor[family][i],
-             rung_choice(rung, static_cast<Family>(family))},
-            i, measured_);
+        const Estimate estimate = {
+            std::max(0.0, unbiased(lower, family, noise, i)), risk, error, lower.normal[i], lower.tensor[family][i],
+            rung_choice(rung, static_cast<Family>(family))};
+        mix(estimate, weight_of(of_quartic(family) ? quartic_share * risk : risk), i, measured_);
     }
 }
 
@@ -317,6 +291,7 @@ Measured measured_so_far(const AutomaticCurvature& result) {
             measured.risk[i] = static_cast<float>(result.error[i] * result.error[i]);
             measured.weight[i] = weight_of(measured.risk[i]);
         }
+    measured.error = measured.risk;
     measured.density = result.density, measured.normal = result.normal;
     measured.tensor = result.tensor, measured.choice = result.choice;
     return measured;
@@ -384,7 +359,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     Measured& lowest = measured.front();
     add_window_bias(graph, lowest, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
-        if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.risk[i]);
+        if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.error[i]);
     result.density = lowest.density, result.normal = lowest.normal;
     result.tensor = lowest.tensor, result.choice = lowest.choice;
 }

@@ -18,7 +18,7 @@ namespace {
 /// window 1 − (1 − K)² does, K being half as wide.
 constexpr int of_quadrics = 60, of_quartics = 120;
 /// What is missing, squared, relative to what goes at second sight.
-constexpr float missing_of_quadrics = 3, missing_of_quartics = 4;
+constexpr float missing_of_quadrics = 4, missing_of_quartics = 6;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
 constexpr int near_reach = 12;
 
@@ -52,7 +52,7 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
     }
     diffuse(bias, graph, near_reach, run);
     for (std::size_t i = 0; i < bias.size(); ++i)
-        if (rung_of(measured.choice[i]) >= 0 && std::isfinite(bias[i])) measured.risk[i] += bias[i];
+        if (rung_of(measured.choice[i]) >= 0 && std::isfinite(bias[i])) measured.error[i] += bias[i];
 }
 
 }  // namespace gaussmap

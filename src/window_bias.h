@@ -7,7 +7,7 @@
 
 namespace gaussmap {
 
-/// Add it, squared, to the risks of elements that were measured on a rung. For what is told of the error alone: the
+/// Add it, squared, to the errors of elements that were measured on a rung. For what is told of the error alone: the
 /// choice of the rung has its own, sharper means where these see something.
 void add_window_bias(const ElementGraph& graph, Measured& measured, const Execution& run);
 
