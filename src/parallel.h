@@ -39,7 +39,7 @@ template <class Body>
 void for_blocks(std::size_t count, std::size_t grain, const Execution& run, Body&& body) {
     const std::size_t blocks = block_count(count, grain);
     const auto bounds = [&](std::size_t b) { return std::min(count, (b + 1) * grain); };
-    const int threads = static_cast<int>(std::min<std::size_t>(thread_count(run), blocks));
+    [[maybe_unused]] const int threads = static_cast<int>(std::min<std::size_t>(thread_count(run), blocks));
 #ifdef _OPENMP
     if (threads > 1) {
         std::atomic<bool> stop{false}, cancelled{false};
