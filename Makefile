@@ -130,6 +130,7 @@ bench-accuracy: setup
 	@cmake --preset bench >/dev/null
 	@cmake --build --preset bench --target bench_accuracy
 	/usr/bin/python3 bench/accuracy.py build/bench $(if $(QUICK),--quick)
+	/usr/bin/python3 bench/mesh_speed.py build/bench
 
 bench-cloud: setup
 	@cmake --preset bench >/dev/null

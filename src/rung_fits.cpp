@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::size_t grain = 256;
 
+/// Rungs up to which the rings of a mesh are searched at once: 72 neighbours, then 216, as far as the lowest level
+/// goes.
+constexpr int few_rings = 3, many_rings = 6;
+
 LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
 }
@@ -27,10 +31,25 @@ constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.4
 Rung RungFits::step(int rung) {
     Rung found(level_.count());
     constexpr std::size_t part = 64 * grain;  // whose rows are held at once
+    if (elements_.connected && level_.members == 1) keep_rings(rung);
     for (std::size_t first = 0; first < level_.count(); first += part)
         fit(rung, first, std::min(level_.count(), first + part), found);
     average(rung, found);
     return found;
+}
+
+/// Searches for many neighbours begin with those of searches for few: two of them do for all rungs.
+void RungFits::keep_rings(int rung) {
+    if (window(rung) <= ring_width_) return;
+    ring_width_ = window(rung <= few_rings ? few_rings : many_rings);
+    rings_.assign(level_.count() * ring_width_, -1);
+    for_blocks(level_.count(), Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
+        const auto on = [&](std::size_t i) { return active_[i] != 0; };
+        for (std::size_t end = a; a < b; a = end) {
+            for (end = a + 1; end < b && on(end) == on(a);) ++end;
+            if (on(a)) elements_.neighbors(a, end, static_cast<int>(ring_width_), rings_.data() + a * ring_width_);
+        }
+    });
 }
 
 void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
@@ -45,24 +64,13 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
     const std::size_t k = window(rung);
     const bool by_faces = elements_.connected && level_.members == 1;
     std::vector<std::int32_t> rows;
-    if (by_faces) {
-        rows.assign((last - first) * k, -1);
-        for_blocks(last - first, Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
-            const auto on = [&](std::size_t i) { return active_[first + i] != 0; };
-            for (std::size_t end = a; a < b; a = end) {
-                for (end = a + 1; end < b && on(end) == on(a);) ++end;
-                if (on(a)) elements_.neighbors(first + a, first + end, static_cast<int>(k), rows.data() + a * k);
-            }
-        });
-    } else {
-        rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
-    }
+    if (!by_faces) rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
         WindowFits windows(static_cast<int>(k) + 1);
         std::size_t in_lane[fit_lanes];
         for (; a < b; ++a) {
             const std::size_t i = who[a];
-            const std::int32_t* row = rows.data() + (by_faces ? i - first : a) * k;
+            const std::int32_t* row = by_faces ? rings_.data() + i * ring_width_ : rows.data() + a * k;
             const Vec3 foot = level_.foot_of(i);
             if (by_faces) windows.add(level_.at(i) - foot);
             for (std::size_t j = 0; j < k && row[j] >= 0; ++j)

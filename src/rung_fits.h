@@ -79,6 +79,7 @@ class RungFits {
     }
     /// Of how many in a window one is a sample.
     static std::size_t samples_stride(std::size_t window) { return (window + most_samples - 1) / most_samples; }
+    void keep_rings(int rung);
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
     void keep(std::size_t i, const WindowFit& fit, Rung& found);
@@ -94,6 +95,8 @@ class RungFits {
     const std::vector<std::uint8_t>& active_;
     Execution run_;
     NeighborIndex index_;
+    std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width_` neighbours of each element
+    std::size_t ring_width_ = 0;
     std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 for itself
 };
 
