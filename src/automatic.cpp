@@ -26,8 +26,12 @@ constexpr double negligible = 1e-4;
 /// Residuals with less noise than this part are those of a clean surface.
 constexpr double noise_part = 0.25;
 /// Noise scatters the densities of neighbours; residuals that scatter them less than this part of what noise would
-/// (relative variances, at most 1) are those of a shape too thin for its sampling.
-constexpr double scatter_part = 0.3;
+/// (relative variances, at most 1) are those of a shape too thin for its sampling, and where they scatter so many times
+/// more there is detail that noise hardly touches.
+constexpr double scatter_part = 0.3, detail_part = 20;
+/// Noise scatters the residuals themselves, too; less than this (variance of logarithms, at least 0.04 under noise)
+/// comes of a grid, whose remainders are alike from one point to the next, and grow slowly beside a border.
+constexpr double random_scatter = 0.02;
 
 /// Steps of diffusion.
 constexpr int change_reach = 8, noise_reach = 15;
@@ -39,8 +43,9 @@ struct Looks {
     std::vector<FirstLook::Fit> fit[fits];
     std::vector<float> change[fits];  ///< squared
     std::vector<float> residual, wide_residual, variance, trace;
-    std::vector<float> scatter;   ///< of the logarithm of the density among neighbours
-    std::vector<float> expected;  ///< squared relative error that noise would make, at most 1
+    std::vector<float> scatter;           ///< of the logarithm of the density among neighbours
+    std::vector<float> residual_scatter;  ///< and of that of the residual
+    std::vector<float> expected;          ///< squared relative error that noise would make, at most 1
 
     explicit Looks(std::size_t count)
         : residual(count, nan),
@@ -48,6 +53,7 @@ struct Looks {
           variance(residual),
           trace(residual),
           scatter(residual),
+          residual_scatter(residual),
           expected(residual) {
         for (int f = 0; f < fits; ++f) fit[f].resize(count), change[f] = residual;
     }
@@ -70,7 +76,11 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
     looks.wide_residual[i] = static_cast<float>(look.wide_residual);
     looks.variance[i] = static_cast<float>(look.variance);
     looks.trace[i] = static_cast<float>(look.trace);
-    looks.scatter[i] = static_cast<float>(std::log(look.chord.density + std::numeric_limits<float>::min()));
+    const auto logarithm = [](double value) {
+        return static_cast<float>(std::log(value + std::numeric_limits<float>::min()));
+    };
+    looks.scatter[i] = logarithm(look.chord.density);
+    looks.residual_scatter[i] = logarithm(look.residual);
 }
 
 /// The neighbours of an element, put into a lane; how many there are.
@@ -136,12 +146,15 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
     for (const std::size_t n : lowered) result.lowered += n;
 
     const ElementGraph& graph = result.graph;
-    // Of the deviations from the neighbours' mean, so that a smooth density's slope and bend do not pass for noise.
-    std::vector<float> smooth = looks.scatter;
-    diffuse(smooth, graph, 1, run);
-    for (std::size_t i = 0; i < tile.count; ++i) looks.scatter[i] -= smooth[i];
-    looks.scatter = roughness(looks.scatter, graph, run);
-    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter}, graph, noise_reach, run);
+    for (std::vector<float>* scatter : {&looks.scatter, &looks.residual_scatter}) {
+        // Of the deviations from the neighbours' mean, so that the slope and bend of what is smooth do not pass for
+        // noise.
+        std::vector<float> smooth = *scatter;
+        diffuse(smooth, graph, 1, run);
+        for (std::size_t i = 0; i < tile.count; ++i) (*scatter)[i] -= smooth[i];
+        *scatter = roughness(*scatter, graph, run);
+    }
+    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter, &looks.residual_scatter}, graph, noise_reach, run);
     for (std::size_t i = 0; i < tile.count; ++i) {
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
@@ -180,7 +193,8 @@ void mix(const Looks& looks, std::size_t i, AutomaticCurvature& result) {
 bool is_noisy(const Looks& looks, std::size_t i) {
     const double noise = noise_variance(looks.residual[i], looks.wide_residual[i]);
     return noise > noise_part * looks.residual[i] && looks.expected[i] > negligible * negligible &&
-           looks.scatter[i] > scatter_part * looks.expected[i];
+           looks.scatter[i] > scatter_part * looks.expected[i] && looks.scatter[i] < detail_part * looks.expected[i] &&
+           looks.residual_scatter[i] > random_scatter;
 }
 
 /// Where the ladder is needed.
