@@ -66,19 +66,21 @@ def main():
     line = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     line.add_argument("build", type=Path)
     line.add_argument("--repeat", type=int, default=3)
-    line.add_argument("--only", default="", help="surfaces whose name contains this")
+    line.add_argument("--only", default="", help="meshes whose name, as waves_n1, contains this")
     options = line.parse_args()
     bench = Bench(options.build.resolve(), quick=True)
     if bench.python is None:
         return 1
-    names = [name for name in SURFACES if options.only in name]
-    bench.make_shapes(1, names)
+    chosen = [(kind, name) for kind in KINDS for name in SURFACES if options.only in f"{name}_{kind}"]
+    if not chosen:
+        sys.exit(f"mesh_speed: no mesh has {options.only!r} in its name")
+    bench.make_shapes(1, [name for name in SURFACES if any(name == other for _, other in chosen)])
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     print("| mesh | ours, µs a vertex | libigl | ours / libigl | relative RMSE | libigl |\n|---|---|---|---|---|---|")
     means = []
     for kind in KINDS:
         ratios = []
-        for name in names:
+        for name in (name for of, name in chosen if of == kind):
             file = bench.shapes / "meshes" / f"{name}_{kind}.ply"
             ours = peer = None
             for _ in range(options.repeat):
@@ -90,7 +92,8 @@ def main():
             rates = [1e6 * found["seconds"] / found["vertices"] for found in (ours, peer)]
             print(f"| {name} {kind} | {rates[0]:.1f} | {rates[1]:.1f} | {ratios[-1]:.2f} | {ours['error']:.3g} | "
                   f"{peer['error']:.3g} |", flush=True)
-        means.append(f"{kind}: geometric mean {geometric_mean(ratios):.2f}, largest {max(ratios):.2f}")
+        if ratios:
+            means.append(f"{kind}: geometric mean {geometric_mean(ratios):.2f}, largest {max(ratios):.2f}")
     print("\n" + "\n".join(means))
     return 0
 
