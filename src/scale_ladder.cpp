@@ -146,9 +146,11 @@ void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, 
 /// Squared changes relative to those expected of noise: what is usual over a wide region and near by, what is surely
 /// more than noise, and the most that counts, as the tails of noise are heavy.
 constexpr float usual = 1.2F, usual_near = 2, sure = 2.5F, sure_near = 4, most_surprising = 50;
-/// What the families of second order smooth away alike, no change between their rungs tells. So against them half of
-/// the risk of quartics counts.
+/// What the families of second order smooth away alike, where windows are as wide as the shape, no change between their
+/// rungs tells. So against them half of the risk of quartics counts, in windows of about a thousand neighbours and
+/// more.
 constexpr float quartic_share = 0.5F;
+constexpr double members_where_wide = Level::group * Level::group;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -207,6 +209,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
     const Field &variance = changes.variance[family], &change = changes.square[family], &near = changes.near[family],
                 &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
+    const bool wide = level_.members >= members_where_wide;
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
@@ -241,7 +244,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         const Estimate estimate = {
             std::max(0.0, unbiased(lower, family, noise, i)), risk, error, lower.normal[i], lower.tensor[family][i],
             rung_choice(rung, static_cast<Family>(family))};
-        mix(estimate, weight_of(of_quartic(family) ? quartic_share * risk : risk), i, measured_);
+        mix(estimate, weight_of(of_quartic(family) && wide ? quartic_share * risk : risk), i, measured_);
     }
 }
 
