@@ -194,6 +194,19 @@ Level coarsened(Level& level, const Execution& run) {
     return above;
 }
 
+Measured nothing_measured(std::size_t count) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    Measured measured;
+    measured.density.assign(count, nan);
+    measured.risk.assign(count, std::numeric_limits<float>::infinity());
+    measured.error = measured.risk;
+    measured.weight.assign(count, 0);
+    measured.normal.assign(count, Vec3{nan, nan, nan});
+    measured.tensor.resize(count);
+    measured.choice.assign(count, 0);
+    return measured;
+}
+
 void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measured) {
     const bool best = estimate.risk < measured.risk[i];
     const double so_far = measured.weight[i], part = weight / (weight + so_far);

@@ -45,6 +45,8 @@ struct Measured {
     std::vector<std::uint8_t> choice;  ///< of the smallest risk
 };
 
+Measured nothing_measured(std::size_t count);
+
 /// What a fit makes of an element.
 struct Estimate {
     double density;

@@ -31,7 +31,7 @@ constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.4
 Rung RungFits::step(int rung) {
     Rung found(level_.count());
     constexpr std::size_t part = 64 * grain;  // whose rows are held at once
-    if (elements_.connected && level_.members == 1) keep_rings(rung);
+    if (by_rings()) keep_rings(rung);
     for (std::size_t first = 0; first < level_.count(); first += part)
         fit(rung, first, std::min(level_.count(), first + part), found);
     average(rung, found);
@@ -62,17 +62,17 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
     }
     if (who.empty()) return;
     const std::size_t k = window(rung);
-    const bool by_faces = elements_.connected && level_.members == 1;
+    const bool along_edges = by_rings();
     std::vector<std::int32_t> rows;
-    if (!by_faces) rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
+    if (!along_edges) rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
         WindowFits windows(static_cast<int>(k) + 1);
         std::size_t in_lane[fit_lanes];
         for (; a < b; ++a) {
             const std::size_t i = who[a];
-            const std::int32_t* row = by_faces ? rings_.data() + i * ring_width_ : rows.data() + a * k;
+            const std::int32_t* row = along_edges ? rings_.data() + i * ring_width_ : rows.data() + a * k;
             const Vec3 foot = level_.foot_of(i);
-            if (by_faces) windows.add(level_.at(i) - foot);
+            if (along_edges) windows.add(level_.at(i) - foot);
             for (std::size_t j = 0; j < k && row[j] >= 0; ++j)
                 windows.add(level_.at(static_cast<std::size_t>(row[j])) - foot);
             if (windows.count() < static_cast<int>(k)) {

@@ -79,6 +79,8 @@ class RungFits {
     }
     /// Of how many in a window one is a sample.
     static std::size_t samples_stride(std::size_t window) { return (window + most_samples - 1) / most_samples; }
+    /// Whether windows follow the edges of a mesh.
+    bool by_rings() const { return elements_.connected && level_.members == 1; }
     void keep_rings(int rung);
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);

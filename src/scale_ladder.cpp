@@ -85,18 +85,6 @@ Standing coarsened(const Standing& below, const Level& level, const Level& above
     return standing;
 }
 
-Measured nothing_measured(std::size_t count) {
-    Measured measured;
-    measured.density.assign(count, nan);
-    measured.risk.assign(count, never);
-    measured.error = measured.risk;
-    measured.weight.assign(count, 0);
-    measured.normal.assign(count, Vec3{nan, nan, nan});
-    measured.tensor.resize(count);
-    measured.choice.assign(count, 0);
-    return measured;
-}
-
 /// What the next rung changes, by family.
 struct Changes {
     std::array<Field, families> variance;  ///< of the density, by noise
@@ -146,6 +134,8 @@ void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, 
 /// Squared changes relative to those expected of noise: what is usual over a wide region and near by, what is surely
 /// more than noise, and the most that counts, as the tails of noise are heavy.
 constexpr float usual = 1.2F, usual_near = 2, sure = 2.5F, sure_near = 4, most_surprising = 50;
+/// A choice had better fear that all of the change over a wide region is bias, and near by what exceeds this.
+constexpr float not_feared_near = 1;
 /// What the families of second order smooth away alike, where windows are as wide as the shape, no change between their
 /// rungs tells. So against them half of the risk of quartics counts, in windows of about a thousand neighbours and
 /// more.
@@ -223,8 +213,8 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         const auto squared_error = [&](double more) {
             return static_cast<float>(by_noise + std::max<double>(to_bias * more, known_bias[i]));
         };
-        // A choice had better fear that all of the change is bias; an error told, only what is not usual of noise.
-        const float risk = squared_error(std::max(change[i], near[i] - 1));
+        const float risk = squared_error(std::max(change[i], near[i] - not_feared_near));
+        // What is told of the error is only what is not usual of noise.
         const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}));
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything.

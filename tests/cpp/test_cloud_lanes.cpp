@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "../../src/lane_fits.h"
+#include "lane_fit_kernels.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -47,19 +48,11 @@ LaneFields fit(const LaneFit& kernel, const LanePatches& patches, const LaneRang
     return fields;
 }
 
-std::vector<const LaneFitKernel*> kernels() {
-    std::vector<const LaneFitKernel*> found = {&lane_fit_baseline};
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2")) found.push_back(&lane_fit_avx2);
-#endif
-    return found;
-}
-
 }  // namespace
 
 TEST(LaneFits, FindPolynomials) {
     const LanePatches patches = random_patches(1);
-    for (const LaneFitKernel* kernel : kernels())
+    for (const LaneFitKernel* kernel : lane_fit_kernels())
         for (const Weights weights : all_weights)
             for (const AtElement element : {AtElement::zero, AtElement::datum, AtElement::free}) {
                 const LaneFields fields = fit(kernel->quartic, patches, range(24, Chart::monge, weights), element);
@@ -84,7 +77,7 @@ TEST(LaneFits, ChordsMakeSpheresQuadrics) {
             patches.d[j][2][l] = radius * (std::cos(polar) - 1);
         }
     for (int l = 0; l < fit_lanes; ++l) patches.see(l, plain, 1);
-    for (const LaneFitKernel* kernel : kernels()) {
+    for (const LaneFitKernel* kernel : lane_fit_kernels()) {
         const LaneFields fields =
             fit(kernel->quadric, patches, range(9, Chart::chord, Weights::equal), AtElement::zero);
         for (int l = 0; l < fit_lanes; ++l) {
@@ -100,7 +93,7 @@ TEST(LaneFits, ChordsMakeSpheresQuadrics) {
 TEST(LaneFits, CovarianceOfUnitNoise) {
     const LanePatches patches = random_patches(3);
     const LaneRange over = range(24, Chart::monge, Weights::equal);
-    for (const LaneFitKernel* kernel : kernels()) {
+    for (const LaneFitKernel* kernel : lane_fit_kernels()) {
         const LaneFields fields = fit(kernel->quartic, patches, over, AtElement::zero);
         double sum[3][3] = {};
         for (int j = 0; j < 24; ++j) {
@@ -119,7 +112,7 @@ TEST(LaneFits, CovarianceOfUnitNoise) {
 
 TEST(LaneFits, RangesAddUp) {
     const LanePatches patches = random_patches(4);
-    for (const LaneFitKernel* kernel : kernels()) {
+    for (const LaneFitKernel* kernel : lane_fit_kernels()) {
         LaneSums sums;
         LaneFields fields = {};
         LaneRange part = {{}, {24, 20, 16, 24}, Chart::chord, Weights::equal};
@@ -142,7 +135,7 @@ TEST(LaneFits, LanesStandAlone) {
     LanePatches mixed = good;
     for (int j = 0; j < 24; ++j) mixed.d[j][0][1] = j % 4 - 1, mixed.d[j][1][1] = j / 4 - 2.5, mixed.d[j][2][1] = 0.1;
     mixed.see(2, {{NAN, NAN, NAN}, {NAN, NAN, NAN}, {NAN, NAN, NAN}}, NAN);
-    for (const LaneFitKernel* kernel : kernels())
+    for (const LaneFitKernel* kernel : lane_fit_kernels())
         for (const Weights weights : all_weights) {
             const LaneFields all = fit(kernel->quartic, good, range(24, Chart::chord, weights), AtElement::zero),
                              some = fit(kernel->quartic, mixed, range(24, Chart::monge, weights), AtElement::zero),

@@ -18,18 +18,6 @@ namespace {
 
 constexpr float never = std::numeric_limits<float>::infinity();
 
-Measured nothing(std::size_t count) {
-    Measured measured;
-    measured.density.assign(count, NAN);
-    measured.risk.assign(count, never);
-    measured.error = measured.risk;
-    measured.weight.assign(count, 0);
-    measured.normal.assign(count, Vec3{NAN, NAN, NAN});
-    measured.tensor.resize(count);
-    measured.choice.assign(count, 0);
-    return measured;
-}
-
 Symmetric3 across(Vec3 normal, double k) {
     const Frame frame = frame_about(normal);
     Symmetric3 tensor;
@@ -70,7 +58,7 @@ double density_at(Vec3 p) {
 
 TEST(Pyramid, MixesByWeightAndTellsOfTheBest) {
     Random random(1);
-    Measured measured = nothing(1);
+    Measured measured = nothing_measured(1);
     const Vec3 pole = {0, 0, 1};
     double sum = 0, weights = 0, curvature = 0;
     float best = never;
@@ -95,7 +83,7 @@ TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
     Level fine = sphere_level(600);
     const Level coarse = coarsened(fine, {1, {}});
     ASSERT_EQ(coarse.count(), 200U);
-    Measured above = nothing(coarse.count()), below = nothing(fine.count());
+    Measured above = nothing_measured(coarse.count()), below = nothing_measured(fine.count());
     for (std::size_t g = 0; g < coarse.count(); ++g)
         mix({density_at(coarse.foot_of(g)), 0.01F, 0.02F, coarse.normal[g], across(coarse.normal[g], 1), 20}, 3, g,
             above);
@@ -114,7 +102,7 @@ TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
 
 TEST(Pyramid, OnlyThoseBorrowWhoDoNotKnowTheSize) {
     const Level level = sphere_level(60);
-    Measured measured = nothing(level.count());
+    Measured measured = nothing_measured(level.count());
     const auto put = [&](std::size_t i, double density, float risk) {
         mix({density, risk, risk, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
     };

@@ -7,6 +7,7 @@
 
 #include "../../src/shape_tensor.h"
 #include "../../src/window_fits.h"
+#include "lane_fit_kernels.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -34,14 +35,6 @@ std::vector<Vec3> cap(std::uint64_t seed, double noise) {
 void fill(WindowFits& windows, const std::vector<Vec3>& points, Vec3 element) {
     for (const Vec3 point : points) windows.add(point - element);
     windows.close();
-}
-
-std::vector<const LaneFitKernel*> kernels() {
-    std::vector<const LaneFitKernel*> found = {&lane_fit_baseline};
-#ifdef __x86_64__
-    if (__builtin_cpu_supports("avx2")) found.push_back(&lane_fit_avx2);
-#endif
-    return found;
 }
 
 }  // namespace
@@ -136,7 +129,7 @@ TEST(WindowFits, TellWhatIsNotDetermined) {
 TEST(WindowFits, SameBitsFromEveryInstructionSet) {
     const std::vector<Vec3> points = cap(6, 0.05);
     std::vector<LaneFields> found;
-    for (const LaneFitKernel* kernel : kernels()) {
+    for (const LaneFitKernel* kernel : lane_fit_kernels()) {
         WindowFits windows(count);
         for (std::size_t l = 0; l < 4; ++l)
             fill(windows, {points.begin(), points.end() - static_cast<std::ptrdiff_t>(7 * l)}, {0, 0, radius});
