@@ -19,8 +19,13 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 /// Variance of an interpolating quartic's density relative to that of equal weights.
 constexpr double interpolation_variance = 8;
-/// Errors of the fits relative to their measured change, most of them: of quartics 0.15 to 0.6, of quadrics 1.
-constexpr double error_share[] = {0.45, 0.45, 0.9};
+/// Error of a quartic relative to its change by half as many neighbours more (1.7 to 2.8 on what we measured). Where a
+/// window is too wide for its shape both may agree on what is wrong, which equal weights then change all the more. So a
+/// part of that change counts too (the error is 0.1 to 0.5 of it): a larger one on grids, whose symmetry hides some of
+/// the remainder from the former, and a still larger one where there are no more neighbours.
+constexpr double of_widened = 2.2, of_change = 0.05, of_change_on_grid = 0.15, of_change_alone = 0.45;
+/// Error of a quadric relative to its difference from the quartic.
+constexpr double of_quadric = 0.9;
 /// Noise that moves the density by less than this is no matter.
 constexpr double negligible = 1e-4;
 /// Residuals with less noise than this part are those of a clean surface.
@@ -34,14 +39,15 @@ constexpr double scatter_part = 0.3, detail_part = 20;
 constexpr double random_scatter = 0.02;
 
 /// Steps of diffusion.
-constexpr int change_reach = 8, noise_reach = 15;
+constexpr int error_reach = 2, noise_reach = 15;
 
-constexpr int fits = 3;  ///< chord, monge, quadric
+constexpr int quartics = 2, fits = 3;  ///< chord, monge; quadric
 
 /// What the first look found, an element each.
 struct Looks {
     std::vector<FirstLook::Fit> fit[fits];
-    std::vector<float> change[fits];  ///< squared
+    std::vector<float> change[fits], widened[fits];  ///< squared
+    std::vector<float> error[fits];                  ///< squared, told by them
     std::vector<float> residual, wide_residual, variance, trace;
     std::vector<float> scatter;           ///< of the logarithm of the density among neighbours
     std::vector<float> residual_scatter;  ///< and of that of the residual
@@ -55,7 +61,7 @@ struct Looks {
           scatter(residual),
           residual_scatter(residual),
           expected(residual) {
-        for (int f = 0; f < fits; ++f) fit[f].resize(count), change[f] = residual;
+        for (int f = 0; f < fits; ++f) fit[f].resize(count), change[f] = widened[f] = error[f] = residual;
     }
 };
 
@@ -71,6 +77,7 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
     for (int f = 0; f < fits; ++f) {
         looks.fit[f][i] = *found[f];
         looks.change[f][i] = static_cast<float>(found[f]->change * found[f]->change);
+        looks.widened[f][i] = static_cast<float>(found[f]->widened * found[f]->widened);
     }
     looks.residual[i] = static_cast<float>(look.residual);
     looks.wide_residual[i] = static_cast<float>(look.wide_residual);
@@ -81,6 +88,26 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
     };
     looks.scatter[i] = logarithm(look.chord.density);
     looks.residual_scatter[i] = logarithm(look.residual);
+}
+
+/// Whether the remainders are alike from one element to the next.
+bool on_grid(const Looks& looks, std::size_t i) {
+    return looks.residual_scatter[i] < random_scatter;
+}
+
+/// What the changes tell of the squared errors, over the surface near by.
+void tell_errors(Looks& looks, const ElementGraph& graph, const Execution& run) {
+    for (std::size_t i = 0; i < looks.residual.size(); ++i) {
+        const double part = on_grid(looks, i) ? of_change_on_grid : of_change;
+        for (int f = 0; f < quartics; ++f) {
+            const double change = looks.change[f][i], widened = looks.widened[f][i];
+            looks.error[f][i] =
+                static_cast<float>(std::isfinite(widened) ? of_widened * of_widened * widened + part * part * change
+                                                          : of_change_alone * of_change_alone * change);
+        }
+        looks.error[quartics][i] = static_cast<float>(of_quadric * of_quadric * looks.change[quartics][i]);
+    }
+    diffuse({&looks.error[0], &looks.error[1], &looks.error[2]}, graph, error_reach, run);
 }
 
 /// The neighbours of an element, put into a lane; how many there are.
@@ -159,9 +186,8 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
     }
-    static_assert(change_reach < noise_reach);
-    diffuse({&looks.change[0], &looks.change[1], &looks.change[2], &looks.expected}, graph, change_reach, run);
-    diffuse(looks.expected, graph, noise_reach - change_reach, run);
+    diffuse(looks.expected, graph, noise_reach, run);
+    tell_errors(looks, graph, run);
     return looks;
 }
 
@@ -169,8 +195,7 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
 void mix(const Looks& looks, std::size_t i, AutomaticCurvature& result) {
     double weight[fits], sum = 0, smallest = std::numeric_limits<double>::infinity(), square[fits];
     for (int f = 0; f < fits; ++f) {
-        const double change = looks.change[f][i];
-        square[f] = std::isfinite(looks.fit[f][i].density) ? error_share[f] * error_share[f] * change : nan;
+        square[f] = std::isfinite(looks.fit[f][i].density) ? looks.error[f][i] : nan;
         if (square[f] < smallest) smallest = square[f];
     }
     double expected = 0;
@@ -194,7 +219,7 @@ bool is_noisy(const Looks& looks, std::size_t i) {
     const double noise = noise_variance(looks.residual[i], looks.wide_residual[i]);
     return noise > noise_part * looks.residual[i] && looks.expected[i] > negligible * negligible &&
            looks.scatter[i] > scatter_part * looks.expected[i] && looks.scatter[i] < detail_part * looks.expected[i] &&
-           looks.residual_scatter[i] > random_scatter;
+           !on_grid(looks, i);
 }
 
 /// Where the ladder is needed.

@@ -25,7 +25,8 @@ struct FirstLook {
     struct Fit {
         Symmetric3 tensor;
         double density = nan;
-        double change = nan;  ///< of the density, by another fit that is somewhat worse
+        double change = nan;   ///< of the density, by another fit that is somewhat worse
+        double widened = nan;  ///< and by the same fit over more neighbours
     };
     /// Quartics, weighted by the inverse of the expected remainder, in chords and in Monge coordinates; equal weights
     /// change them. A quadric in chords over few neighbours; the quartic changes it.

@@ -12,22 +12,46 @@ namespace gaussmap {
 namespace {
 
 /// The measures' error is for the most part that of an average over the one-ring. An average over the ring's vertices
-/// changes them by 1.8 times as much (second moments of hexagons and of their corners; measured on grids: 1.7 to 1.9).
-/// Fits that differ by more than 1.5 times that error, squared, are the culprits; unless the difference is rough, as it
-/// is on irregular meshes (the mean square deviation from the mean nearby is 0.7 of the mean square and more), where it
-/// is the measures that err.
-constexpr double of_blur = 0.7, of_rough = 2;
+/// changes them by 1.7 times as much (second moments of hexagons and of their corners; measured on grids: 1.7 to 1.9).
+/// Fits that differ by more than that error are the culprits, as far as their own error explains it. Where it does not,
+/// either the fit is blind (quartics over five rows or fewer see no remainder across them) or the ring is: second
+/// differences along its diameters may cancel in the mean. Then the fit is the culprit only if it differs by more than
+/// those could make out each by itself.
+constexpr double of_blur = 0.34, of_bends = 4;
+/// The most that an error explains, squared.
+constexpr double explained = 4;
+/// None of it holds where the difference is rough, as on irregular meshes (the mean square deviation from the mean
+/// nearby is 0.7 of the mean square and more): there it is the measures that err.
+constexpr double of_rough = 2;
 constexpr int reach = 8;  ///< steps of diffusion
 
-/// Over the vertices of the one-ring.
-double mean_around(std::size_t vertex, const std::vector<double>& field, const VertexRings& rings) {
-    double sum = 0;
+/// The neighbour of a vertex that lies most nearly opposite to another.
+std::size_t opposite(std::size_t vertex, Vec3 to, Points vertices, const VertexRings& rings) {
+    const Vec3 here = load(vertices[vertex]);
+    double least = 2;
+    std::size_t found = vertex;
+    for (const std::int32_t v : rings.around(vertex)) {
+        const Vec3 other = load(vertices[static_cast<std::size_t>(v)]) - here;
+        const double cosine = dot(to, other) / (length(to) * length(other));
+        if (cosine < least) least = cosine, found = static_cast<std::size_t>(v);
+    }
+    return found;
+}
+
+/// Half of the second differences of a field along the diameters of a one-ring.
+struct Bends {
+    double mean, mean_square;
+};
+Bends bends(std::size_t vertex, Points vertices, const std::vector<double>& field, const VertexRings& rings) {
+    double sum = 0, squares = 0;
     int terms = 0;
     for (const std::int32_t v : rings.around(vertex)) {
-        const double value = field[static_cast<std::size_t>(v)];
-        if (std::isfinite(value)) sum += value, ++terms;
+        const auto to = static_cast<std::size_t>(v);
+        const std::size_t from = opposite(vertex, load(vertices[to]) - load(vertices[vertex]), vertices, rings);
+        const double bend = 0.5 * (field[to] + field[from]) - field[vertex];
+        if (std::isfinite(bend)) sum += bend, squares += bend * bend, ++terms;
     }
-    return sum / terms;
+    return {sum / terms, squares / terms};
 }
 
 /// Whether the one-ring is closed, and those of its vertices: on borders the measures are one-sided, and err with the
@@ -47,15 +71,17 @@ void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, 
     const std::size_t count = found.density.size();
     const std::vector<double> corrected = corrected_density(vertices, faces, fitted_normals, run);
     // Relative to the fits: squares of densities have no place among floats.
-    std::vector<float> change(count, nan), difference(count, nan), blur(count, nan);
+    std::vector<float> change(count, nan), difference(count, nan), blur(count, nan), square(count, nan);
     for (std::size_t i = 0; i < count; ++i) {
         if (found.choice[i] != clean || !inside(i, rings)) continue;
         change[i] = static_cast<float>((corrected[i] - found.density[i]) * found.unit);
         difference[i] = change[i] * change[i];
-        blur[i] = static_cast<float>(std::pow((mean_around(i, corrected, rings) - corrected[i]) * found.unit, 2));
+        const Bends bent = bends(i, vertices, corrected, rings);
+        blur[i] = static_cast<float>(std::pow(bent.mean * found.unit, 2));
+        square[i] = static_cast<float>(bent.mean_square * found.unit * found.unit);
     }
     std::vector<float> rough = roughness(change, found.graph, run);
-    for (auto* field : {&rough, &difference, &blur}) diffuse(*field, found.graph, reach, run);
+    for (auto* field : {&rough, &difference, &blur, &square}) diffuse(*field, found.graph, reach, run);
     const bool enough = count > wide_neighbors;
     const std::vector<double> own = corrected_density(vertices, faces, mesh_normals, run);
     for (std::size_t i = 0; i < count; ++i) {
@@ -63,9 +89,12 @@ void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, 
         if (!std::isfinite(own[i]) || !inside(i, rings)) continue;
         // Where many neighbours lie on too few lines for a quartic, as on long cells, there is no fit to speak of.
         const bool lines = found.choice[i] == lowered && enough;
-        const bool wrong = found.choice[i] == clean && difference[i] > of_blur * blur[i] + of_rough * rough[i];
+        const double unexplained = difference[i] - of_rough * rough[i];
+        const bool owned = difference[i] < explained * std::pow(found.error[i] * found.unit, 2);
+        const bool wrong = found.choice[i] == clean && unexplained > (owned ? of_blur * blur[i] : of_bends * square[i]);
         if (!lines && !wrong) continue;
         found.density[i] = own[i];
+        if (wrong) found.error[i] = std::sqrt(of_blur * blur[i]) / found.unit;
         found.choice[i] = one_ring_choice;
     }
 }
