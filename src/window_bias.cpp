@@ -22,33 +22,48 @@ constexpr float missing_of_quadrics = 4, missing_of_quartics = 6;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
 constexpr int near_reach = 12;
 
-/// The densities averaged once for as many neighbours in an element's window as said.
-std::vector<float> averaged(const ElementGraph& graph, const Measured& measured, int neighbors, const Execution& run) {
+/// The densities averaged as often as a rung wants.
+template <class Steps>
+std::vector<float> averaged(const ElementGraph& graph, const Measured& measured, Steps&& wanted, const Execution& run) {
     std::vector<float> smooth(measured.density.begin(), measured.density.end()), out(smooth);
     int highest = -1, steps = 0;
     for (const std::uint8_t choice : measured.choice) highest = std::max(highest, rung_of(choice));
     for (int rung = 0; rung <= highest; ++rung) {
-        const int wanted = std::max(1, rung_neighbors(rung) / neighbors);
-        diffuse(smooth, graph, wanted - steps, run);
-        steps = wanted;
+        diffuse(smooth, graph, wanted(rung) - steps, run);
+        steps = wanted(rung);
         for (std::size_t i = 0; i < out.size(); ++i)
             if (rung_of(measured.choice[i]) == rung) out[i] = smooth[i];
     }
     return out;
 }
 
+/// So many at least, which is more than small windows take: the neighbours of an element do not lie evenly about it,
+/// and that is most of what a few averages change. How much more, by the squares of lengths, `share` tells.
+constexpr int fewest = 6;
+int averages(int rung, int neighbors) {
+    return std::max(fewest, rung_neighbors(rung) / neighbors);
+}
+float share(int rung, int neighbors) {
+    return static_cast<float>(rung_neighbors(rung)) / static_cast<float>(neighbors * averages(rung, neighbors));
+}
+
 }  // namespace
 
 void add_window_bias(const ElementGraph& graph, Measured& measured, const Execution& run) {
-    const std::vector<float> narrow = averaged(graph, measured, of_quartics, run),
-                             wide = averaged(graph, measured, of_quadrics, run);
+    const auto by = [&](int neighbors, int times) {
+        return averaged(
+            graph, measured, [&](int rung) { return times * averages(rung, neighbors); }, run);
+    };
+    const std::vector<float> once = by(of_quadrics, 1), narrow = by(of_quartics, 1), wide = by(of_quartics, 2);
     std::vector<float> bias(measured.density.size(), 0);
     for (std::size_t i = 0; i < bias.size(); ++i) {
-        if (rung_of(measured.choice[i]) < 0) continue;
+        const int rung = rung_of(measured.choice[i]);
+        if (rung < 0) continue;
         const auto density = static_cast<float>(measured.density[i]);
         bias[i] = family_of(measured.choice[i]) == Family::quartic
-                      ? missing_of_quartics * std::pow(density - 2 * narrow[i] + wide[i], 2.0F)
-                      : missing_of_quadrics * std::pow(density - wide[i], 2.0F);
+                      ? missing_of_quartics * std::pow(share(rung, of_quartics), 4.0F) *
+                            std::pow(density - 2 * narrow[i] + wide[i], 2.0F)
+                      : missing_of_quadrics * std::pow(share(rung, of_quadrics) * (density - once[i]), 2.0F);
     }
     diffuse(bias, graph, near_reach, run);
     for (std::size_t i = 0; i < bias.size(); ++i)
