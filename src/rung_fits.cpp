@@ -163,8 +163,10 @@ void RungFits::average(int rung, Rung& found) {
 }
 
 /// Inverse variance of what a quadric tells of its shape operator, relative to that over a disc filled evenly, at most
-/// 1. Beside borders it is a tenth, and the others tell more.
-double RungFits::precision(std::size_t i, int rung, const Rung& found) {
+/// 1. Beside borders it is a tenth, and the others tell more. On meshes windows are as long as the cells, which would
+/// weigh one side of a window more for the layout alone; and bias, which even weights cancel, counts more there.
+double RungFits::precision(std::size_t i, int rung, const Rung& found) const {
+    if (elements_.connected) return 1;
     const double size2 = double(found.size[i]) * double(found.size[i]);
     return std::min(1.0, even_trace / (rung_neighbors(rung) * double(found.trace[0][i]) * size2 * size2));
 }
