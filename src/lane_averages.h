@@ -20,6 +20,7 @@ constexpr double one_sheet = 0.3;
 struct alignas(32) SurfaceSample {
     double normal[3] = {nan, nan, nan}, foot[3] = {nan, nan, nan};
     double tensor[6] = {nan, nan, nan, nan, nan, nan};  ///< xx xy xz yy yz zz, of the tangent plane
+    double weight = 0;                                  ///< inverse to the variance
 
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
@@ -41,19 +42,21 @@ struct alignas(32) LaneCentres {
     }
 };
 
-/// Sums over the samples in a window, with the weights 1 − (d/h)².
+/// Sums over the samples in a window, with their weights times 1 − (d/h)².
 struct alignas(32) LaneAverages {
     LaneValues weight, count;
     LaneValues tensor[3];  ///< uu, uv, vv, each turned into the element's tangent plane by the smallest rotation
-    LaneValues power[SlopeFit::powers], slope[SlopeFit::most][2], square;
+    LaneValues power[SlopeFit::powers], slope[SlopeFit::most][2], normal[2], square;
 
-    SlopeFit slopes(int lane) const {
+    /// \param own  weight of the element itself.
+    SlopeFit slopes(int lane, double own) const {
         SlopeFit fit;
         double powers[SlopeFit::powers], slopes[SlopeFit::most][2];
         for (int p = 0; p < SlopeFit::powers; ++p) powers[p] = power[p][lane];
         for (int m = 0; m < SlopeFit::most; ++m)
             for (int c = 0; c < 2; ++c) slopes[m][c] = slope[m][c][lane];
         fit.set(powers, slopes, square[lane], static_cast<int>(count[lane]));
+        fit.let_free(own, weight[lane], {normal[0][lane], normal[1][lane]});
         return fit;
     }
 };

@@ -84,9 +84,10 @@ GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Ce
     sight.uu = sign * dot(a, ta), sight.uv = sign * dot(b, ta), sight.vv = sign * dot(b, tb);
     // Other sheets and far sides look elsewhere.
     const Mask seen = (cosine >= one_sheet) & (away < centre.reach);
+    const Real known = gather([&](const SurfaceSample& s) { return s.weight; });
     for (int m = 0; m < 2; ++m) {
         const Real weight = 1 - away * centre.inverse_reach[m];
-        sight.weight[m] = select(seen & (weight > 0), weight, Real{});
+        sight.weight[m] = select(seen & (weight > 0), known * weight, Real{});
     }
     // What is not there is NaN, and would stay so with any weight.
     for (Real* value : {&sight.u, &sight.v, &sight.normal_u, &sight.normal_v, &sight.uu, &sight.uv, &sight.vv})
@@ -96,7 +97,7 @@ GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Ce
 
 /// Sums of one window.
 struct Sums {
-    Real weight, count, tensor[3], power[SlopeFit::powers], slope[SlopeFit::most][2], square;
+    Real weight, count, tensor[3], power[SlopeFit::powers], slope[SlopeFit::most][2], normal[2], square;
 };
 
 /// Two samples at a time, so that the sums are loaded and stored once for both.
@@ -105,6 +106,8 @@ GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Sums& sums) {
     const Real wa = a.weight[M], wb = b.weight[M];
     sums.weight += wa + wb;
     sums.count += select(wa > 0, all(1), Real{}) + select(wb > 0, all(1), Real{});
+    sums.normal[0] += wa * a.normal_u + wb * b.normal_u;
+    sums.normal[1] += wa * a.normal_v + wb * b.normal_v;
     sums.tensor[0] += wa * a.uu + wb * b.uu;
     sums.tensor[1] += wa * a.uv + wb * b.uv;
     sums.tensor[2] += wa * a.vv + wb * b.vv;
@@ -135,6 +138,7 @@ void keep(const Sums& sums, int lane, LaneAverages& to) {
     for (int i = 0; i < SlopeFit::powers; ++i) store(&to.power[i][lane], sums.power[i]);
     for (int i = 0; i < SlopeFit::most; ++i)
         for (int c = 0; c < 2; ++c) store(&to.slope[i][c][lane], sums.slope[i][c]);
+    for (int c = 0; c < 2; ++c) store(&to.normal[c][lane], sums.normal[c]);
     store(&to.square[lane], sums.square);
 }
 

@@ -88,7 +88,9 @@ class RungFits {
     void average(int rung, Rung& found);
     void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
                           const std::vector<SurfaceSample>& samples, Rung& found);
-    void keep(std::size_t i, int lane, const LaneAverages (&windows)[2], const LaneCentres& centres, Rung& found);
+    double precision(std::size_t i, int rung, const Rung& found) const;
+    void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
+              Rung& found);
 
     static constexpr int most_samples = 96;  ///< of an average
 

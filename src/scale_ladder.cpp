@@ -37,9 +37,16 @@ struct Traits {
     /// How much of the bias the next rung adds to it: at most the growth of h² less 1, 0.44, or of h⁴ less 1, 1.07 (of
     /// quartics); windows of noisy data are as wide as the shape, and their bias grows more slowly.
     double bias;
+    /// The same at borders, where the bias of quadrics and means grows with h, as odd orders do not cancel over half
+    /// discs: at most the growth of h less 1, 0.2, and a little more where even ones are as large.
+    double bias_at_border;
 };
-constexpr std::array<Traits, families> traits = {
-    {{1, 0.42, 0.38}, {0.24, 0.31, 0.38}, {0.08, 0.35, 0.36}, {0.20, 0.30, 0.36}, {0.09, 0.28, 0.32}, {1, 0.50, 0.78}}};
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23},
+                                                  {0.24, 0.31, 0.38, 0.23},
+                                                  {0.08, 0.35, 0.36, 0.22},
+                                                  {0.20, 0.30, 0.36, 0.36},
+                                                  {0.09, 0.28, 0.32, 0.32},
+                                                  {1, 0.50, 0.78, 0.78}}};
 
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
@@ -51,6 +58,15 @@ double relative_variance(const Rung& rung, int family, std::size_t i) {
     if (family == static_cast<int>(Family::half_slope)) return even * rung.spread[0][i];
     if (family == static_cast<int>(Family::slope)) return even * rung.spread[1][i];
     return even;
+}
+
+/// How much the next rung adds to a family's bias. A border that cuts a window shows in the variance of its slopes.
+double bias_growth(const Rung& rung, int family, std::size_t i) {
+    constexpr double uncut = 1.3, cut = 2.5;
+    const Traits& known = traits[static_cast<std::size_t>(family)];
+    const double spread = rung.spread[1][i];
+    const double border = spread > uncut ? std::min(1.0, (spread - uncut) / (cut - uncut)) : 0;
+    return known.bias + border * (known.bias_at_border - known.bias);
 }
 
 /// What the ladder knows of the elements of a level.
@@ -209,7 +225,8 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
         const double expected = known.change * variance[i];
-        const double by_noise = variance[i], to_bias = expected / (known.bias * known.bias);
+        const double growth = bias_growth(lower, family, i);
+        const double by_noise = variance[i], to_bias = expected / (growth * growth);
         const auto squared_error = [&](double more) {
             return static_cast<float>(by_noise + std::max<double>(to_bias * more, known_bias[i]));
         };
@@ -217,13 +234,15 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         // What is told of the error is only what is not usual of noise.
         const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}));
         if (!(risk < never)) continue;
-        // Where noise is as large as the value, its tails are no measure of anything.
+        // Where noise is as large as the value, its tails are no measure of anything. The value is not more than the
+        // mean's, which noise raises least: that of slopes near a border may be all noise.
         const double density = lower.density[family][i];
+        const double least_raised = std::min<double>(density, lower.density[static_cast<int>(Family::mean)][i]);
         const double surely = std::max(change[i] - sure, near[i] - sure_near);
-        if (variance[i] < 0.1 * density * density && surely > 0) {
+        if (variance[i] < 0.1 * least_raised * least_raised && surely > 0) {
             const double step = std::sqrt(expected * surely);
             known_bias[i] =
-                static_cast<float>(std::pow(std::max(step / known.bias, std::sqrt(double(known_bias[i]))) + step, 2));
+                static_cast<float>(std::pow(std::max(step / growth, std::sqrt(double(known_bias[i]))) + step, 2));
         }
         // Far above its own best it will not come back.
         if (standing_.settled[i]) {

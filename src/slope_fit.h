@@ -1,5 +1,6 @@
 // The slopes of a surface's normals: least squares of the tangential parts of normals against places in the tangent
-// plane, by normal equations. The element itself has place 0 and normal part 0, and every fit passes through it.
+// plane, by normal equations. The element itself has place 0 and normal part 0, and every fit passes through it, unless
+// it is let free.
 #pragma once
 
 #include <algorithm>
@@ -48,6 +49,22 @@ class SlopeFit {
         }
         total_ += weight * (normal_u * normal_u + normal_v * normal_v);
         ++count_;
+    }
+
+    /// Let fits pass by the element, whose own normal is a datum among the others: beside a border it is the worst.
+    /// \param own     its weight.
+    /// \param weight  of the others together.
+    /// \param normal  their weighted sums of normal_u and of normal_v.
+    void let_free(double own, double weight, const double (&normal)[2]) {
+        // The constant is eliminated from the normal equations: sums of products less products of sums.
+        const double each = 1 / (own + weight);
+        for (int i = 0; i < most; ++i) {
+            const double part = each * y_[i][2];
+            for (int j = 0; j <= i; ++j) a_[i][j] -= part * y_[j][2];
+            for (int c = 0; c < 2; ++c) y_[i][c] -= part * normal[c];
+        }
+        for (int i = 0; i < most; ++i) y_[i][2] = 0;
+        total_ -= each * (normal[0] * normal[0] + normal[1] * normal[1]);
     }
 
     int count() const { return count_; }

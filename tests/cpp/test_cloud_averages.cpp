@@ -1,6 +1,7 @@
 // Averages about four elements side by side: against sums made sample by sample with tensors turned in space, on
 // samples of a bumpy surface with some that must not count; the same bits whatever goes along and from every
-// instruction set.
+// instruction set. Slopes with a free constant against normal equations of six unknowns.
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -34,7 +35,10 @@ std::vector<SurfaceSample> samples_about_the_pole(Random& random) {
         add_product(t, side * (1 + 0.2 * random.normal()), frame.u, frame.u);
         add_product(t, side * 0.2 * random.normal(), frame.u, frame.v);
         add_product(t, side * (1 + 0.2 * random.normal()), frame.v, frame.v);
-        sample = {{normal.x, normal.y, normal.z}, {foot.x, foot.y, foot.z}, {t.xx, t.xy, t.xz, t.yy, t.yz, t.zz}};
+        sample = {{normal.x, normal.y, normal.z},
+                  {foot.x, foot.y, foot.z},
+                  {t.xx, t.xy, t.xz, t.yy, t.yz, t.zz},
+                  0.2 + random.uniform()};
     }
     samples[3] = {};                                                              // nothing is known there
     for (double& n : samples[4].normal) n = &n == &samples[4].normal[0] ? 1 : 0;  // upright
@@ -69,7 +73,79 @@ Symmetric3 tensor_of(const SurfaceSample& s) {
     return {s.tensor[0], s.tensor[1], s.tensor[2], s.tensor[3], s.tensor[4], s.tensor[5]};
 }
 
+/// Slopes of a fit whose constant is a sixth unknown, and the covariance of the linear part, by normal equations
+/// inverted as they stand. The element itself is the first datum, at place 0 with normal 0.
+struct PlainFit {
+    double s[2][2], covariance[2][2], residual;
+};
+PlainFit plain_fit(const std::vector<std::array<double, 5>>& data) {
+    constexpr int terms = 6;
+    double a[terms][2 * terms + 2] = {}, square = 0, explained = 0;  // with the two sides and the unit matrix
+    const auto at = [](const std::array<double, 5>& d) {
+        return std::array<double, terms>{d[0], d[1], d[0] * d[0], d[0] * d[1], d[1] * d[1], 1};
+    };
+    double sides[terms][2] = {};
+    for (const auto& d : data) {
+        const auto m = at(d);
+        for (int i = 0; i < terms; ++i) {
+            for (int j = 0; j < terms; ++j) a[i][j] += d[4] * m[i] * m[j];
+            for (int c = 0; c < 2; ++c) sides[i][c] += d[4] * m[i] * d[2 + c];
+        }
+        square += d[4] * (d[2] * d[2] + d[3] * d[3]);
+    }
+    for (int i = 0; i < terms; ++i) {
+        a[i][terms] = sides[i][0], a[i][terms + 1] = sides[i][1];
+        a[i][terms + 2 + i] = 1;
+    }
+    for (int p = 0; p < terms; ++p) {
+        const double pivot = a[p][p];
+        for (double& x : a[p]) x /= pivot;
+        for (int i = 0; i < terms; ++i) {
+            const double factor = i == p ? 0 : a[i][p];
+            for (int j = 0; j < 2 * terms + 2; ++j) a[i][j] -= factor * a[p][j];
+        }
+    }
+    PlainFit fit;
+    for (int i = 0; i < terms; ++i)
+        for (int c = 0; c < 2; ++c) explained += a[i][terms + c] * sides[i][c];
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) fit.s[i][j] = a[j][terms + i], fit.covariance[i][j] = a[i][terms + 2 + j];
+    fit.residual = square - explained;
+    return fit;
+}
+
 }  // namespace
+
+TEST(SlopeFit, LetFreeIsTheFitWithAConstant) {
+    Random random(3);
+    // Over half a disc, where the constant matters.
+    std::vector<std::array<double, 5>> data = {{0, 0, 0, 0, 0.3}};
+    SlopeFit slopes;
+    double weights = 0, normals[2] = {};
+    for (int i = 0; i < 60; ++i) {
+        const double u = random.uniform(), v = 2 * random.uniform() - 1, weight = 0.1 + random.uniform();
+        const double nu = 0.1 + 0.5 * u - 0.2 * v + 0.05 * random.normal(), nv = 0.7 * v + 0.05 * random.normal();
+        data.push_back({u, v, nu, nv, weight});
+        slopes.add(u, v, nu, nv, weight);
+        weights += weight, normals[0] += weight * nu, normals[1] += weight * nv;
+    }
+    Slopes through, fit;
+    ASSERT_TRUE(slopes.solve<5>(through));
+    slopes.let_free(0.3, weights, normals);
+    ASSERT_TRUE(slopes.solve<5>(fit));
+    const PlainFit truth = plain_fit(data);
+    EXPECT_NEAR(fit.residual, truth.residual, 1e-10);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(fit.shift[i], 0);
+        for (int j = 0; j < 2; ++j) {
+            EXPECT_NEAR(fit.s[i][j], truth.s[i][j], 1e-10);
+            EXPECT_NEAR(fit.covariance[i][j], truth.covariance[i][j], 1e-10);
+        }
+    }
+    // The element's own normal is off by 0.1: a fit through it is tilted by that, a free one is not.
+    EXPECT_GT(std::abs(through.s[0][0] - 0.5), 0.15);
+    EXPECT_LT(std::abs(fit.s[0][0] - 0.5), 0.15);
+}
 
 TEST(LaneAverages, AreThoseOfPlainSums) {
     Random random(1);
@@ -86,19 +162,21 @@ TEST(LaneAverages, AreThoseOfPlainSums) {
         for (int m = 0; m < 2; ++m) {
             Symmetric3 sum;
             SlopeFit slopes;
-            double weights = 0;
+            double weights = 0, normals[2] = {};
             for (const std::int32_t s : row) {
                 if (s < 0) continue;
                 const SurfaceSample& sample = samples[static_cast<std::size_t>(s)];
                 const Vec3 its = load(sample.normal), d = load(sample.foot) - at;
-                const double along = dot(its, normal), weight = 1 - squared(d) / centres.reach[m][0];
+                const double along = dot(its, normal), weight = sample.weight * (1 - squared(d) / centres.reach[m][0]);
                 if (!(std::abs(along) >= one_sheet) || !(weight > 0)) continue;
                 const double side = along < 0 ? -1 : 1;
                 add(sum, side * weight, carried(tensor_of(sample), side * its, normal));
                 slopes.add(dot(d, frame.u) / whole, dot(d, frame.v) / whole, dot(side * its, frame.u),
                            dot(side * its, frame.v), weight);
                 weights += weight;
+                normals[0] += weight * side * dot(its, frame.u), normals[1] += weight * side * dot(its, frame.v);
             }
+            slopes.let_free(0.4, weights, normals);
             counted[m] = slopes.count();
             for (const int lane : {0, 2, 3}) {
                 const LaneAverages& found = windows[m];
@@ -107,7 +185,7 @@ TEST(LaneAverages, AreThoseOfPlainSums) {
                 EXPECT_NEAR(found.tensor[1][lane], dot(frame.u, product(sum, frame.v)), 1e-12 * weights);
                 EXPECT_NEAR(found.tensor[2][lane], dot(frame.v, product(sum, frame.v)), 1e-12 * weights);
                 Slopes truth, fit;
-                ASSERT_TRUE(slopes.solve<5>(truth) && found.slopes(lane).solve<5>(fit));
+                ASSERT_TRUE(slopes.solve<5>(truth) && found.slopes(lane, 0.4).solve<5>(fit));
                 EXPECT_EQ(fit.free, truth.free);
                 EXPECT_NEAR(fit.residual, truth.residual, 1e-10);
                 for (int a = 0; a < 2; ++a) {
