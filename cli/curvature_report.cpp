@@ -84,7 +84,7 @@ void add_tensor(Table& table, const Json& tensor) {
 
 void add_confidence(Table& table, const Json& confidence) {
     std::string words = "median standard error " + number(confidence["median_relative_error"]) + " of the density";
-    if (const auto within = confidence.find("truth_within_two_errors"); within != confidence.end())
+    if (const Json* const within = confidence.find("truth_within_two_errors"))
         words += fmt::format(", the truth within two errors for {} of all", number(*within));
     table.add("confidence", words);
 }
@@ -121,7 +121,7 @@ Json curvature_report(const CurvatureOptions& o, const CurvaturePlan& plan, cons
 
 std::string curvature_title(const Json& report) {
     const std::string vertices = count(report["vertices"].get<std::size_t>(), "vertex", "vertices");
-    if (report["kind"] == "cloud")
+    if (report["kind"].get<std::string>() == "cloud")
         return fmt::format("{}: a cloud of {}", report["file"].get<std::string>(),
                            count(report["vertices"].get<std::size_t>(), "point", "points"));
     return fmt::format("{}: a mesh of {} and {}", report["file"].get<std::string>(), vertices,
@@ -129,10 +129,10 @@ std::string curvature_title(const Json& report) {
 }
 
 Table curvature_table(const Json& report) {
-    const bool mesh = report["kind"] == "mesh";
+    const bool mesh = report["kind"].get<std::string>() == "mesh";
     const auto n = [&](const char* key) { return report[key].get<std::size_t>(); };
     const auto where_there = [&](const char* key, auto&& add) {
-        if (const auto part = report.find(key); part != report.end()) add(*part);
+        if (const Json* const part = report.find(key)) add(*part);
     };
     const char *const one = mesh ? "vertex" : "point", *const many = mesh ? "vertices" : "points";
     Table table;

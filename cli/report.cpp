@@ -110,8 +110,7 @@ void add_ending(Table& table, const Json& report) {
 
 void present(const Json& report, const std::string& title, const Table& table, const Common& common) {
     if (common.json) {
-        // A name or a comment of a file may be no UTF-8; what cannot be shown is replaced.
-        put(report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+        put(report.dump() + "\n");
         return;
     }
     if (common.quiet) return;

@@ -2,15 +2,13 @@
 #pragma once
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "commandline.h"
+#include "json.h"
 
 namespace cli {
-
-using Json = nlohmann::ordered_json;
 
 /// Wall-clock seconds since it was made, or since the last lap.
 class Stopwatch {

@@ -41,14 +41,13 @@ void declare(CommandLine& line, Options& o) {
     line.group("Samples");
     line.option("--samples", o.samples, "N",
                 "Points on the faces of each mesh, and a quarter as many on its edges; all vertices besides (default: "
-                "500000)")
-        ->check(whole_number(1, 100000000));
-    line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)")->check(whole_number(0, INT64_MAX));
+                "500000)",
+                whole_number(1, 100000000));
+    line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)", whole_number(0, INT64_MAX));
     line.group("Bounds");
     line.flag("--bound", o.bound, "Bound the Hausdorff distances with certainty");
     line.option("--tolerance", o.tolerance, "T",
-                "How far apart the bounds may be, divided by the diagonal of A (default: 0.0001)")
-        ->check(positive_number());
+                "How far apart the bounds may be, divided by the diagonal of A (default: 0.0001)", positive_number());
 }
 
 /// Points without a place are left out of a cloud, and counted.
@@ -161,7 +160,7 @@ Table table_of(const Json& report) {
         table.add(label,
                   fmt::format("max {}, RMS {}, mean {}", number(way["max"]), number(way["rms"]), number(way["mean"])));
     }
-    if (report.contains("bound"))
+    if (report.find("bound"))
         for (const auto& [key, label] : ways) {
             const Json& way = report["bound"][key];
             table.add(fmt::format("Hausdorff, {}", label),
@@ -215,7 +214,8 @@ void compare(int argc, char** argv) {
             report["notes"].push_back(fmt::format("{}: {} left out, being not finite", side->path,
                                                   count(side->non_finite, "point", "points")));
     }
-    if (o.bound && !(report["bound"]["forward"]["within_tolerance"] && report["bound"]["backward"]["within_tolerance"]))
+    const auto within = [&](const char* way) { return report["bound"][way]["within_tolerance"].get<bool>(); };
+    if (o.bound && !(within("forward") && within("backward")))
         report["notes"].push_back("the bounds are farther apart than --tolerance: it would have taken too long");
     present(report, fmt::format("{} and {}", o.a, o.b), table_of(report), line.common);
 }

@@ -200,7 +200,7 @@ void curvature(int argc, char** argv) {
 
     std::vector<std::string> notes = geometry.notes;
     notes.insert(notes.end(), plan.notes.begin(), plan.notes.end());
-    if (plan.mesh && report["duplicates"] > 0) notes.push_back(hint_of_cuts(report));
+    if (plan.mesh && report["duplicates"].get<std::size_t>() > 0) notes.push_back(hint_of_cuts(report));
     watch.lap();
     if (o.outputs.any_picture())
         concerning(o.input, [&] {

@@ -2,6 +2,7 @@
 // that a viewer draws. Plain C, so that no glue of its own is needed.
 #include <emscripten/emscripten.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -59,7 +60,7 @@ gaussmap::Vec3 sides_of(const std::vector<double>& vertices) {
 }
 
 Json triple(gaussmap::Vec3 v) {
-    return {v.x, v.y, v.z};
+    return std::array{v.x, v.y, v.z};
 }
 
 std::string text;
