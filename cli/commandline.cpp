@@ -28,14 +28,12 @@ std::size_t columns(std::string_view text) {
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-CLI::Validator real_number(bool zero_too, const char* wanted) {
-    return CLI::Validator(
-        [=](std::string& text) -> std::string {
-            double value = 0;
-            const bool good = is_number(text, value) && std::isfinite(value) && (value > 0 || (zero_too && value == 0));
-            return good ? "" : fmt::format("'{}' is not {}", text, wanted);
-        },
-        "");
+Check real_number(bool zero_too, const char* wanted) {
+    return [=](const std::string& text) -> std::string {
+        double value = 0;
+        const bool good = is_number(text, value) && std::isfinite(value) && (value > 0 || (zero_too && value == 0));
+        return good ? "" : fmt::format("'{}' is not {}", text, wanted);
+    };
 }
 
 /// "-k" is how a one-letter name is typed, "--json" a longer one.
@@ -86,40 +84,41 @@ std::string wrapped(const std::string& text, std::size_t indent) {
     return out;
 }
 
-CLI::Validator one_of(const std::vector<std::string>& words) {
-    return CLI::Validator(
-        [words](std::string& text) -> std::string {
-            if (std::find(words.begin(), words.end(), text) != words.end()) return "";
-            return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "), did_you_mean(text, words));
-        },
-        "");
+Check one_of(const std::vector<std::string>& words) {
+    return [words](const std::string& text) -> std::string {
+        if (std::find(words.begin(), words.end(), text) != words.end()) return "";
+        return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "), did_you_mean(text, words));
+    };
 }
 
-CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
-    return CLI::Validator(
-        [=](std::string& text) -> std::string {
-            std::int64_t value = 0;
-            if (is_number(text, value) && value >= least && value <= most) return "";
-            return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
-        },
-        "");
+Check whole_number(std::int64_t least, std::int64_t most) {
+    return [=](const std::string& text) -> std::string {
+        std::int64_t value = 0;
+        if (is_number(text, value) && value >= least && value <= most) return "";
+        return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+    };
 }
 
-CLI::Validator positive_number() {
+Check positive_number() {
     return real_number(false, "a number above 0");
 }
-CLI::Validator number_of_at_least_zero() {
+Check number_of_at_least_zero() {
     return real_number(true, "a number of at least 0");
 }
 
 CommandLine::CommandLine(std::string usage, std::string about, std::string examples)
-    : usage_(std::move(usage)), about_(std::move(about)), examples_(std::move(examples)) {
-    app_.set_help_flag();  // the page is ours
-    app_.allow_extras();   // told apart in refuse_unknown, with a "did you mean"
+    : app_(std::make_unique<CLI::App>()),
+      usage_(std::move(usage)),
+      about_(std::move(about)),
+      examples_(std::move(examples)) {
+    app_->set_help_flag();  // the page is ours
+    app_->allow_extras();   // told apart in refuse_unknown, with a "did you mean"
 }
 
+CommandLine::~CommandLine() = default;
+
 void CommandLine::input(std::string& value, const std::string& name, const std::string& about) {
-    app_.add_option(name, value)->group("");
+    app_->add_option(name, value)->group("");
     inputs_.push_back({name, about, &value, true});
 }
 
@@ -128,14 +127,36 @@ void CommandLine::optional_input(std::string& value, const std::string& name, co
     inputs_.back().required = false;
 }
 
-CLI::Option* CommandLine::flag(const std::string& names, bool& value, const std::string& about) {
-    return app_.add_flag(names, value, about)->group(group_);
+template <class Value>
+void CommandLine::option(const std::string& names, Value& value, const std::string& value_name,
+                         const std::string& about, const Check& check) {
+    CLI::Option* const option = app_->add_option(names, value, about)
+                                    ->type_name(value_name)
+                                    ->group(group_)
+                                    ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    if (check) option->check(check);
+}
+template void CommandLine::option(const std::string&, std::string&, const std::string&, const std::string&,
+                                  const Check&);
+template void CommandLine::option(const std::string&, int&, const std::string&, const std::string&, const Check&);
+template void CommandLine::option(const std::string&, unsigned long&, const std::string&, const std::string&,
+                                  const Check&);
+template void CommandLine::option(const std::string&, unsigned long long&, const std::string&, const std::string&,
+                                  const Check&);
+template void CommandLine::option(const std::string&, double&, const std::string&, const std::string&, const Check&);
+
+bool CommandLine::given(const std::string& name) const {
+    return app_->count(name) > 0;
+}
+
+void CommandLine::flag(const std::string& names, bool& value, const std::string& about) {
+    app_->add_flag(names, value, about)->group(group_);
 }
 
 void CommandLine::outputs(std::vector<std::string>& values, bool required, const std::string& extensions) {
-    app_.add_option("-o,--output", values,
-                    "Write this file; the extension decides the format (" + extensions +
-                        "). As often as wanted; - is standard output")
+    app_->add_option("-o,--output", values,
+                     "Write this file; the extension decides the format (" + extensions +
+                         "). As often as wanted; - is standard output")
         ->type_name("OUT")
         ->group(group_)
         ->expected(1)
@@ -147,12 +168,11 @@ void CommandLine::outputs(std::vector<std::string>& values, bool required, const
 void CommandLine::everywhere() {
     group("Everywhere");
     flag("--json", common.json, "One JSON object on standard output, nothing else there");
-    option("--threads", common.threads, "N", "Threads to use (default: all there are). Results do not depend on it")
-        ->check(whole_number(1, 1024));
+    option("--threads", common.threads, "N", "Threads to use (default: all there are). Results do not depend on it",
+           whole_number(1, 1024));
     flag("-q,--quiet", common.quiet, "Nothing on standard error but errors");
-    if (!app_.get_option_no_throw("--seed"))
-        option("--seed", common.seed, "N", "Accepted for scripts; nothing here is random")
-            ->check(whole_number(0, INT64_MAX));
+    if (!app_->get_option_no_throw("--seed"))
+        option("--seed", common.seed, "N", "Accepted for scripts; nothing here is random", whole_number(0, INT64_MAX));
 }
 
 bool CommandLine::parse(int argc, char** argv) {
@@ -161,7 +181,7 @@ bool CommandLine::parse(int argc, char** argv) {
     flag("-h,--help", help_asked, "This page");
     flag("--version", version_asked, "Which gaussmap this is");
     try {
-        app_.parse(argc - 1, argv + 1);
+        app_->parse(argc - 1, argv + 1);
     } catch (const CLI::ParseError& error) {
         refuse_unknown();
         throw Failure(Exit::wrong_usage, in_our_words(error));
@@ -183,11 +203,11 @@ bool CommandLine::parse(int argc, char** argv) {
 }
 
 void CommandLine::refuse_unknown() const {
-    const std::vector<std::string> extras = app_.remaining();
+    const std::vector<std::string> extras = app_->remaining();
     for (const std::string& extra : extras) {
         if (extra.size() < 2 || extra[0] != '-') continue;
         std::vector<std::string> known;
-        for (const CLI::Option* option : app_.get_options())
+        for (const CLI::Option* option : app_->get_options())
             for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
         const std::string name = extra.substr(0, extra.find('='));
         throw Failure(Exit::wrong_usage, fmt::format("unknown option '{}'{}", name, did_you_mean(name, known)));
@@ -209,13 +229,13 @@ std::string CommandLine::help() const {
         page += fmt::format("{}  {:<{}}{}\n", &input == &inputs_.front() ? "\n" : "", input.name, option_width - 2,
                             wrapped(input.about, option_width));
     std::vector<std::string> groups;
-    for (const CLI::Option* option : app_.get_options())
+    for (const CLI::Option* option : app_->get_options())
         if (!option->get_group().empty() &&
             std::find(groups.begin(), groups.end(), option->get_group()) == groups.end())
             groups.push_back(option->get_group());
     for (const std::string& title : groups) {
         page += fmt::format("\n{}:\n", title);
-        for (const CLI::Option* option : app_.get_options()) {
+        for (const CLI::Option* option : app_->get_options()) {
             if (option->get_group() != title) continue;
             std::string left = "  " + names_of(*option);
             if (option->get_items_expected_max() > 0) left += " " + option->get_type_name();

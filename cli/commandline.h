@@ -1,10 +1,15 @@
 // The command line of one verb: options in groups, a help page that opens with examples, and one-line errors.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace cli {
 
@@ -16,34 +21,33 @@ struct Common {
     std::uint64_t seed = 0;
 };
 
-/// Checks of option values; each gives the message of what is wrong, or nothing.
-CLI::Validator one_of(const std::vector<std::string>& words);
-CLI::Validator whole_number(std::int64_t least, std::int64_t most);
-CLI::Validator positive_number();
-CLI::Validator number_of_at_least_zero();
+/// A check of an option's value as it was typed: the message of what is wrong, or nothing.
+using Check = std::function<std::string(const std::string& text)>;
+Check one_of(const std::vector<std::string>& words);
+Check whole_number(std::int64_t least, std::int64_t most);
+Check positive_number();
+Check number_of_at_least_zero();
 
-/// Wraps CLI11: the texts are ours, the parsing is its.
+/// Wraps CLI11: the texts are ours, the parsing is its. Its headers stay in commandline.cpp: they take longer to
+/// compile than a verb does.
 class CommandLine {
   public:
     /// \param usage     "curvature IN [-o OUT]…"
     /// \param about     paragraphs, parted by empty lines
     /// \param examples  lines of a command, two blanks and what it does
     CommandLine(std::string usage, std::string about, std::string examples);
+    ~CommandLine();
 
     /// A positional argument, required; the first one named is the first one typed.
     void input(std::string& value, const std::string& name, const std::string& about);
     /// One more that may be left out.
     void optional_input(std::string& value, const std::string& name, const std::string& about);
-    /// Options of the group that `group` last began. `value_name` is what the help calls the value: "N".
+    /// Options of the group that `group` last began. `value_name` is what the help calls the value: "N". A value is
+    /// text, an int, an unsigned whole number or a double.
     template <class Value>
-    CLI::Option* option(const std::string& names, Value& value, const std::string& value_name,
-                        const std::string& about) {
-        return app_.add_option(names, value, about)
-            ->type_name(value_name)
-            ->group(group_)
-            ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-    }
-    CLI::Option* flag(const std::string& names, bool& value, const std::string& about);
+    void option(const std::string& names, Value& value, const std::string& value_name, const std::string& about,
+                const Check& check = {});
+    void flag(const std::string& names, bool& value, const std::string& about);
     /// -o, as often as wanted, each with one value; `extensions` is what its help names.
     void outputs(std::vector<std::string>& values, bool required, const std::string& extensions);
     void group(const std::string& title) { group_ = title; }
@@ -53,7 +57,7 @@ class CommandLine {
     bool parse(int argc, char** argv);
 
     /// Was the option given? By its long name, "--k".
-    bool given(const std::string& name) const { return app_.count(name) > 0; }
+    bool given(const std::string& name) const;
 
     Common common;
 
@@ -62,7 +66,7 @@ class CommandLine {
     void refuse_unknown() const;
     std::string help() const;
 
-    CLI::App app_;
+    std::unique_ptr<CLI::App> app_;
     std::string usage_, about_, examples_, group_ = "Options";
     struct Input {
         std::string name, about;

@@ -139,40 +139,40 @@ void CurvatureOptions::declare(CommandLine& line) {
     line.group("Method");
     line.option("--as", as, "KIND",
                 "auto, mesh or cloud. auto: a mesh if the file has faces. cloud takes the vertices of a mesh as a "
-                "cloud (default: auto)")
-        ->check(one_of({"auto", "mesh", "cloud"}));
+                "cloud (default: auto)",
+                one_of({"auto", "mesh", "cloud"}));
     line.option("--normals", normals, "N",
                 "auto: those of the file if it has any, else estimate\n"
                 "file: those of the file\n"
                 "estimate: clouds and --estimator regression jet of degree 4, else max\n"
                 "max, angle, area: meshes; weights of the faces around a vertex\n"
                 "pca, wpca, jet: clouds; a fitted plane, the same with near points weighing more, a fitted polynomial "
-                "(default: auto)")
-        ->check(one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "wpca", "jet"}));
+                "(default: auto)",
+                one_of({"auto", "file", "estimate", "area", "angle", "max", "pca", "wpca", "jet"}));
     line.option(
-            "--estimator", estimator, "E",
-            "dirichlet: energy of the normals (Chen 2023)\n"
-            "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
-            "regression: least squares of the differences of neighbours' normals\n"
-            "jet: curvature of a fitted polynomial, which needs no normals\n"
-            "auto: what suits each vertex or point best; on clouds surfaces fitted to the points, where normals tell "
-            "signs alone (default: clouds auto, unless --k, --degree, --orient or --normals ask for normals of some "
-            "kind; else dirichlet)")
-        ->check(one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
+        "--estimator", estimator, "E",
+        "dirichlet: energy of the normals (Chen 2023)\n"
+        "corrected: corrected curvature measures of the vertices (Lachaud et al. 2020); meshes\n"
+        "regression: least squares of the differences of neighbours' normals\n"
+        "jet: curvature of a fitted polynomial, which needs no normals\n"
+        "auto: what suits each vertex or point best; on clouds surfaces fitted to the points, where normals tell "
+        "signs alone (default: clouds auto, unless --k, --degree, --orient or --normals ask for normals of some "
+        "kind; else dirichlet)",
+        one_of({"auto", "dirichlet", "corrected", "regression", "jet"}));
     line.group("Fits and clouds");
     line.option(
-            "--k", k, "N",
-            "Nearest neighbours of a point, 3 to 1000; of a vertex, along edges, for --estimator jet and regression "
-            "(default: 20; auto chooses)")
-        ->check(whole_number(3, 1000));
+        "--k", k, "N",
+        "Nearest neighbours of a point, 3 to 1000; of a vertex, along edges, for --estimator jet and regression "
+        "(default: 20; auto chooses)",
+        whole_number(3, 1000));
     line.option("--degree", degree, "N",
-                "Degree of the jet, 1 to 4, from 2 for --estimator jet (default: 2 for --normals jet, else 4)")
-        ->check(whole_number(1, 4));
+                "Degree of the jet, 1 to 4, from 2 for --estimator jet (default: 2 for --normals jet, else 4)",
+                whole_number(1, 4));
     line.option("--orient", orient, "O",
                 "Clouds: how estimated normals are made to agree. local: around each point\n"
                 "mst: along a spanning tree of the whole cloud\n"
-                "none: not at all (default: local)")
-        ->check(one_of({"local", "mst", "none"}));
+                "none: not at all (default: local)",
+                one_of({"local", "mst", "none"}));
     line.group("Also");
     line.flag("--tensor", tensor,
               "Principal curvatures and directions: k1 ≥ k2 (1/length), positive where the surface bends away from its "

@@ -87,8 +87,8 @@ void Outputs::declare(CommandLine& line, bool required) {
         if (taken) known.append(known.empty() ? "" : " ").append(extension);
     line.outputs(paths, required, known);
     if (!geometries) return;
-    line.option("--format", format_name, "F", "Format of -o -: ply, obj, off, stl, xyz or pcd (default: ply)")
-        ->check(one_of(format_names));
+    line.option("--format", format_name, "F", "Format of -o -: ply, obj, off, stl, xyz or pcd (default: ply)",
+                one_of(format_names));
     line.flag("--ascii", ascii, "Text instead of binary, where the format has both (.ply .stl .pcd)");
 }
 

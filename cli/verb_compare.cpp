@@ -41,14 +41,13 @@ void declare(CommandLine& line, Options& o) {
     line.group("Samples");
     line.option("--samples", o.samples, "N",
                 "Points on the faces of each mesh, and a quarter as many on its edges; all vertices besides (default: "
-                "500000)")
-        ->check(whole_number(1, 100000000));
-    line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)")->check(whole_number(0, INT64_MAX));
+                "500000)",
+                whole_number(1, 100000000));
+    line.option("--seed", line.common.seed, "N", "Of where they are (default: 0)", whole_number(0, INT64_MAX));
     line.group("Bounds");
     line.flag("--bound", o.bound, "Bound the Hausdorff distances with certainty");
     line.option("--tolerance", o.tolerance, "T",
-                "How far apart the bounds may be, divided by the diagonal of A (default: 0.0001)")
-        ->check(positive_number());
+                "How far apart the bounds may be, divided by the diagonal of A (default: 0.0001)", positive_number());
 }
 
 /// Points without a place are left out of a cloud, and counted.

@@ -44,29 +44,29 @@ constexpr const char* examples =
 void declare(CommandLine& line, Options& o) {
     line.input(o.input, "IN", "A mesh: " + gaussmap::known_extensions() + "; - is standard input");
     line.group("Target (one of them)");
-    line.option("--faces", o.faces, "N", "At most this many triangles")->check(whole_number(1, 2147483647));
-    line.option("--ratio", o.ratio, "R", "This part of the triangles, above 0 and at most 1")->check(positive_number());
+    line.option("--faces", o.faces, "N", "At most this many triangles", whole_number(1, 2147483647));
+    line.option("--ratio", o.ratio, "R", "This part of the triangles, above 0 and at most 1", positive_number());
     line.option("--error", o.error, "E",
                 "As few triangles as are found with a two-sided Hausdorff distance of at most E, over the diagonal of "
-                "the box; proven, and some ten times the work")
-        ->check(positive_number());
+                "the box; proven, and some ten times the work",
+                positive_number());
     line.group("Method");
     line.option("--method", o.method, "M",
                 "best: collapses, then a fit to the original\nqem: quadric error metric\nedge: shortest edge first, to "
-                "its midpoint (default: best)")
-        ->check(one_of({"best", "qem", "edge"}));
-    line.option("--objective", o.objective, "O", "Which distance best makes small: rms, max or both (default: both)")
-        ->check(one_of({"rms", "max", "both"}));
+                "its midpoint (default: best)",
+                one_of({"best", "qem", "edge"}));
+    line.option("--objective", o.objective, "O", "Which distance best makes small: rms, max or both (default: both)",
+                one_of({"rms", "max", "both"}));
     line.option("--weight", o.weight, "W",
-                "curvature: costs weigh by the total curvature; none: they do not (default: curvature)")
-        ->check(one_of({"curvature", "none"}));
+                "curvature: costs weigh by the total curvature; none: they do not (default: curvature)",
+                one_of({"curvature", "none"}));
     line.flag("--fast", o.fast, "best without the fit: several times faster, less near");
     line.group("What is kept");
     line.flag("--preserve-boundary", o.preserve_boundary, "Borders hold a thousand times firmer than the surface");
     line.flag("--lock-border", o.lock_border, "No vertex of a border, seam or feature moves or goes");
     line.option("--feature-angle", o.feature_angle, "A",
-                "Edges bent by more than A degrees are features, along which collapses run (default: none)")
-        ->check(positive_number());
+                "Edges bent by more than A degrees are features, along which collapses run (default: none)",
+                positive_number());
     line.flag("--allow-topology", o.allow_topology, "Holes and slits may close");
     line.flag("--weld", o.weld, "First join vertices at exactly the same position");
     o.outputs.declare(line, true);

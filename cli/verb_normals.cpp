@@ -36,19 +36,19 @@ constexpr const char* examples =
 void declare(CommandLine& line, Options& o) {
     line.input(o.input, "IN", "A mesh or a cloud: " + gaussmap::known_extensions() + "; - is standard input");
     line.group("Method");
-    line.option("--as", o.as, "KIND", "auto, mesh or cloud. auto: a mesh if the file has faces (default: auto)")
-        ->check(one_of({"auto", "mesh", "cloud"}));
+    line.option("--as", o.as, "KIND", "auto, mesh or cloud. auto: a mesh if the file has faces (default: auto)",
+                one_of({"auto", "mesh", "cloud"}));
     line.option("--method", o.method, "M",
                 "max, angle, area: meshes; weights of the faces around a vertex (default: max)\n"
                 "jet, pca, wpca: clouds; a fitted polynomial, a fitted plane, the same with near points weighing more "
-                "(default: jet)")
-        ->check(one_of({"max", "angle", "area", "jet", "pca", "wpca"}));
+                "(default: jet)",
+                one_of({"max", "angle", "area", "jet", "pca", "wpca"}));
     line.group("Clouds");
-    line.option("--k", o.k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)")->check(whole_number(3, 1000));
-    line.option("--degree", o.degree, "N", "Degree of the jet, 1 to 4 (default: 4)")->check(whole_number(1, 4));
+    line.option("--k", o.k, "N", "Nearest neighbours a point, 3 to 1000 (default: 20)", whole_number(3, 1000));
+    line.option("--degree", o.degree, "N", "Degree of the jet, 1 to 4 (default: 4)", whole_number(1, 4));
     line.option("--orient", o.orient, "O",
-                "mst: agreeing signs along a spanning tree\nnone: signs as the fit left them (default: mst)")
-        ->check(one_of({"mst", "none"}));
+                "mst: agreeing signs along a spanning tree\nnone: signs as the fit left them (default: mst)",
+                one_of({"mst", "none"}));
     o.outputs.declare(line, true);
 }
 

@@ -36,14 +36,14 @@ constexpr const char* examples =
 void declare(CommandLine& line, Options& o) {
     line.input(o.input, "MESH", "A mesh: " + gaussmap::known_extensions() + "; - is standard input");
     line.group("Points");
-    line.option("--count", o.count, "N", "How many, exactly (default: 10000)")->check(whole_number(1, 100000000));
+    line.option("--count", o.count, "N", "How many, exactly (default: 10000)", whole_number(1, 100000000));
     line.option("--method", o.method, "M",
                 "poisson: Poisson-disk, no two near each other\n"
                 "nonuniform: a random half of twice as many of these, with gaps and close pairs\n"
-                "random: each anywhere, by area (default: poisson)")
-        ->check(one_of({"poisson", "nonuniform", "random"}));
-    line.option("--seed", line.common.seed, "N", "The same seed gives the same points (default: 0)")
-        ->check(whole_number(0, INT64_MAX));
+                "random: each anywhere, by area (default: poisson)",
+                one_of({"poisson", "nonuniform", "random"}));
+    line.option("--seed", line.common.seed, "N", "The same seed gives the same points (default: 0)",
+                whole_number(0, INT64_MAX));
     o.outputs.declare(line, true);
 }
 

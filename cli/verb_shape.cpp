@@ -168,17 +168,15 @@ bool parse(const ShapeOption& option, const std::string& text, std::vector<doubl
     return at == end;
 }
 
-CLI::Validator value_of(const ShapeOption& option) {
-    return CLI::Validator(
-        [&option](std::string& text) -> std::string {
-            std::vector<double> ignored;
-            if (parse(option, text, ignored)) return "";
-            const char* kind = option.whole ? "whole number" : "number";
-            return option.between ? fmt::format("'{}' is not {} {}s as in {}", text, option.numbers.size(), kind,
-                                                option.value_name)
-                                  : fmt::format("'{}' is not a {}", text, kind);
-        },
-        "");
+Check value_of(const ShapeOption& option) {
+    return [&option](const std::string& text) -> std::string {
+        std::vector<double> ignored;
+        if (parse(option, text, ignored)) return "";
+        const char* kind = option.whole ? "whole number" : "number";
+        return option.between
+                   ? fmt::format("'{}' is not {} {}s as in {}", text, option.numbers.size(), kind, option.value_name)
+                   : fmt::format("'{}' is not a {}", text, kind);
+    };
 }
 
 struct Options {
@@ -224,23 +222,23 @@ void declare(CommandLine& line, Options& o) {
     line.input(o.name, "NAME", help_of_names());
     line.group("Surface (lengths in the unit you like)");
     for (const ShapeOption& option : shape_options())
-        line.option(fmt::format("--{}", option.name), o.texts[option.name], option.value_name, option.about)
-            ->check(value_of(option));
+        line.option(fmt::format("--{}", option.name), o.texts[option.name], option.value_name, option.about,
+                    value_of(option));
     line.group("Irregularity");
     line.option(
-            "--jitter", o.surface.jitter, "F",
-            "Move vertices on the surface by up to this fraction of the edge length; 0.25 is irregular (default: 0)")
-        ->check(number_of_at_least_zero());
+        "--jitter", o.surface.jitter, "F",
+        "Move vertices on the surface by up to this fraction of the edge length; 0.25 is irregular (default: 0)",
+        number_of_at_least_zero());
     line.option(
-            "--noise", o.surface.noise, "F",
-            "Then move them off it: Gaussian in each coordinate, its standard deviation as a fraction of --noise-unit. "
-            "Normals and curvature stay those of the clean surface (default: 0)")
-        ->check(number_of_at_least_zero());
+        "--noise", o.surface.noise, "F",
+        "Then move them off it: Gaussian in each coordinate, its standard deviation as a fraction of --noise-unit. "
+        "Normals and curvature stay those of the clean surface (default: 0)",
+        number_of_at_least_zero());
     line.option("--noise-unit", o.noise_unit, "U",
-                "edge: the mean edge length\ndiagonal: the diagonal of the bounding box (default: edge)")
-        ->check(one_of({"edge", "diagonal"}));
-    line.option("--seed", line.common.seed, "N", "Of jitter and noise; the same seed makes the same file (default: 0)")
-        ->check(whole_number(0, INT64_MAX));
+                "edge: the mean edge length\ndiagonal: the diagonal of the bounding box (default: edge)",
+                one_of({"edge", "diagonal"}));
+    line.option("--seed", line.common.seed, "N", "Of jitter and noise; the same seed makes the same file (default: 0)",
+                whole_number(0, INT64_MAX));
     o.outputs.pictures = true;
     o.outputs.declare(line, true);
 }

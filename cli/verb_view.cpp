@@ -59,13 +59,11 @@ std::optional<std::vector<double>> numbers_of(const std::string& text, std::size
     return out;
 }
 
-CLI::Validator numbers(std::size_t count, const char* example) {
-    return CLI::Validator(
-        [=](std::string& text) -> std::string {
-            if (numbers_of(text, count, ',')) return "";
-            return fmt::format("'{}' is not {} numbers as in {}", text, count, example);
-        },
-        "");
+Check numbers(std::size_t count, const char* example) {
+    return [=](const std::string& text) -> std::string {
+        if (numbers_of(text, count, ',')) return "";
+        return fmt::format("'{}' is not {} numbers as in {}", text, count, example);
+    };
 }
 
 std::optional<std::array<int, 2>> size_of(const std::string& text) {
@@ -76,21 +74,17 @@ std::optional<std::array<int, 2>> size_of(const std::string& text) {
     return std::array{static_cast<int>((*sides)[0]), static_cast<int>((*sides)[1])};
 }
 
-CLI::Validator picture_size() {
-    return CLI::Validator(
-        [](std::string& text) -> std::string {
-            if (size_of(text)) return "";
-            return fmt::format("'{}' is not a size as in 1600x1200, each 16 to 16384", text);
-        },
-        "");
+Check picture_size() {
+    return [](const std::string& text) -> std::string {
+        if (size_of(text)) return "";
+        return fmt::format("'{}' is not a size as in 1600x1200, each 16 to 16384", text);
+    };
 }
 
-CLI::Validator one_or_four() {
-    return CLI::Validator(
-        [](std::string& text) -> std::string {
-            return text == "1" || text == "4" ? "" : fmt::format("'{}' is not 1 or 4", text);
-        },
-        "");
+Check one_or_four() {
+    return [](const std::string& text) -> std::string {
+        return text == "1" || text == "4" ? "" : fmt::format("'{}' is not 1 or 4", text);
+    };
 }
 
 void declare(CommandLine& line, Options& o) {
@@ -99,20 +93,20 @@ void declare(CommandLine& line, Options& o) {
     line.group("What");
     line.option("--field", o.field, "PROPERTY",
                 "A property of the vertices (default: the total curvature, measured as gaussmap curvature does)");
-    line.option("--as", o.as, "KIND", "auto, mesh or cloud. auto: a mesh if the file has faces (default: auto)")
-        ->check(one_of({"auto", "mesh", "cloud"}));
+    line.option("--as", o.as, "KIND", "auto, mesh or cloud. auto: a mesh if the file has faces (default: auto)",
+                one_of({"auto", "mesh", "cloud"}));
     line.option("--range", o.range, "LOW,HIGH",
                 "Values of the first and the last colour (default: 0 and the 98th percentile; from the 2nd where there "
-                "are negative values)")
-        ->check(numbers(2, "0,100"));
+                "are negative values)",
+                numbers(2, "0,100"));
     line.group("Picture");
-    line.option("--size", o.size, "WxH", "Pixels (default: 1600x1200)")->check(picture_size());
-    line.option("--views", o.picture.views, "N", "1, or 4: a contact sheet of quarter turns (default: 1)")
-        ->check(one_or_four());
-    line.option("--from", o.from, "X,Y,Z", "Where the eye is, from the middle of the object: a direction")
-        ->check(numbers(3, "1,-2,1"));
-    line.option("--up", o.up, "X,Y,Z", "The upward direction (default: z, or y for what is shortest along z)")
-        ->check(numbers(3, "0,0,1"));
+    line.option("--size", o.size, "WxH", "Pixels (default: 1600x1200)", picture_size());
+    line.option("--views", o.picture.views, "N", "1, or 4: a contact sheet of quarter turns (default: 1)",
+                one_or_four());
+    line.option("--from", o.from, "X,Y,Z", "Where the eye is, from the middle of the object: a direction",
+                numbers(3, "1,-2,1"));
+    line.option("--up", o.up, "X,Y,Z", "The upward direction (default: z, or y for what is shortest along z)",
+                numbers(3, "0,0,1"));
     o.outputs.geometries = false;
     o.outputs.pictures = o.outputs.pages = true;
     o.outputs.declare(line, true);

@@ -39,7 +39,7 @@ std::vector<float> averaged(const ElementGraph& graph, const Measured& measured,
 
 /// So many at least, which is more than small windows take: the neighbours of an element do not lie evenly about it,
 /// and that is most of what a few averages change. How much more, by the squares of lengths, `share` tells.
-constexpr int fewest = 6;
+constexpr int fewest = 4;
 int averages(int rung, int neighbors) {
     return std::max(fewest, rung_neighbors(rung) / neighbors);
 }

@@ -203,3 +203,21 @@ def test_normals_feed_curvature(gaussmap):
     gaussmap("normals", "s.ply", "--as", "cloud", "-o", "n.ply")
     report = gaussmap("curvature", "n.ply", "--as", "cloud", "--normals", "file", "--json").json
     assert report["normals"] == "file" and report["density"]["mean"] == pytest.approx(2, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("comment", "read"),
+    [
+        (b'a "quoted" back\\slash', 'a "quoted" back\\slash'),
+        (b"a\tb\x01c\x7f", "a\tb\x01c\x7f"),
+        ("é€😀\U0010ffff".encode(), "é€😀\U0010ffff"),
+        (b"overlong \xc0\xaf \xe0\x80\xaf.", "overlong \ufffd\ufffd \ufffd\ufffd\ufffd."),
+        (b"surrogate \xed\xa0\x80.", "surrogate \ufffd\ufffd\ufffd."),
+        (b"beyond \xf4\x90\x80\x80.", "beyond \ufffd\ufffd\ufffd\ufffd."),
+        (b"cut off \xf0\x9f\x98", "cut off \ufffd"),
+    ],
+)
+def test_any_text_of_a_file_becomes_json(gaussmap, comment, read):
+    head = b"ply\nformat ascii 1.0\ncomment " + comment + b"\nelement vertex 1\n"
+    file = head + b"property float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n"
+    assert gaussmap("info", "-", "--json", stdin=file).json["comments"] == [read]
