@@ -69,21 +69,22 @@ void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, 
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     constexpr std::uint8_t lowered = 1, clean = 2;
     const std::size_t count = found.density.size();
-    const std::vector<double> corrected = corrected_density(vertices, faces, fitted_normals, run);
+    const std::vector<double> corrected = corrected_density(vertices, faces, fitted_normals, run),
+                              own = corrected_density(vertices, faces, mesh_normals, run);
     // Relative to the fits: squares of densities have no place among floats.
     std::vector<float> change(count, nan), difference(count, nan), blur(count, nan), square(count, nan);
     for (std::size_t i = 0; i < count; ++i) {
-        if (found.choice[i] != clean || !inside(i, rings)) continue;
-        change[i] = static_cast<float>((corrected[i] - found.density[i]) * found.unit);
-        difference[i] = change[i] * change[i];
-        const Bends bent = bends(i, vertices, corrected, rings);
+        if ((found.choice[i] != clean && found.choice[i] != lowered) || !inside(i, rings)) continue;
+        const Bends bent = bends(i, vertices, own, rings);
         blur[i] = static_cast<float>(std::pow(bent.mean * found.unit, 2));
         square[i] = static_cast<float>(bent.mean_square * found.unit * found.unit);
+        if (found.choice[i] != clean) continue;
+        change[i] = static_cast<float>((corrected[i] - found.density[i]) * found.unit);
+        difference[i] = change[i] * change[i];
     }
     std::vector<float> rough = roughness(change, found.graph, run);
     for (auto* field : {&rough, &difference, &blur, &square}) diffuse(*field, found.graph, reach, run);
     const bool enough = count > wide_neighbors;
-    const std::vector<double> own = corrected_density(vertices, faces, mesh_normals, run);
     for (std::size_t i = 0; i < count; ++i) {
         if (found.choice[i] != clean && found.choice[i] != lowered) continue;
         if (!std::isfinite(own[i]) || !inside(i, rings)) continue;
@@ -94,7 +95,7 @@ void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, 
         const bool wrong = found.choice[i] == clean && unexplained > (owned ? of_blur * blur[i] : of_bends * square[i]);
         if (!lines && !wrong) continue;
         found.density[i] = own[i];
-        if (wrong) found.error[i] = std::sqrt(of_blur * blur[i]) / found.unit;
+        found.error[i] = std::sqrt(of_blur * blur[i]) / found.unit;
         found.choice[i] = one_ring_choice;
     }
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <string>
 
 #include "gaussmap/curvature.h"
 #include "gaussmap/surfaces.h"
@@ -72,6 +73,29 @@ TEST(AutoMesh, NoWorseThanOneRingsOnGrids) {
                                 catenoid(1, 2, 90, 45)};
     for (const Surface& s : surfaces)
         EXPECT_LT(error_of(s, Estimator::automatic), 1.1 * best_of_one_rings(s)) << s.density.size();
+}
+
+TEST(AutoMesh, FitsStandWhereTheLaplacianOfTheDensityVanishes) {
+    // Somewhere on each the average over the one-ring changes nothing, and so tells nothing of the one-ring's error.
+    for (const Surface& s : {catenoid(1, 2, 132, 100), torus(1, 0.5, 280, 56), waves(1, 1, 0.05, 0.5, 160, 80)})
+        EXPECT_LT(error_of(s, Estimator::automatic), 0.05 * best_of_one_rings(s)) << s.density.size();
+}
+
+TEST(AutoMesh, OneRingsTellTheirOwnError) {
+    for (const Surface& s : {torus_knot(2, 3, 1, 0.4, 0.15, 300, 24), figure_eight_knot(1.0 / 3, 0.1, 300, 24)}) {
+        const MeshCurvature result = automatic(s);
+        std::size_t taken = 0, covered = 0;
+        double told = 0, made = 0;
+        for (std::size_t i = 0; i < s.density.size(); ++i) {
+            if (std::string(choice_name(result.choice[i])) != "corrected") continue;
+            const double error = result.density[i] - s.density[i];
+            ++taken, covered += std::abs(error) < 2 * result.error[i];
+            told += result.error[i] * result.error[i], made += error * error;
+        }
+        EXPECT_GT(taken, s.density.size() / 2);
+        EXPECT_GT(static_cast<double>(covered), 0.9 * static_cast<double>(taken));
+        EXPECT_LT(told, 9 * made) << "not by being large";
+    }
 }
 
 TEST(AutoMesh, SpheresAndPlanesAreExact) {
