@@ -28,8 +28,9 @@ constexpr double of_widened = 2.2, of_change = 0.05, of_change_on_grid = 0.15, o
 constexpr double of_quadric = 0.9;
 /// Noise that moves the density by less than this is no matter.
 constexpr double negligible = 1e-4;
-/// Residuals with less noise than this part are those of a clean surface.
-constexpr double noise_part = 0.25;
+/// Residuals with less noise than this part are those of a clean surface; with less than the greater part, where that
+/// noise would move the density by less than 0.3 %. (Where there is noise alone it is 0.95 and more.)
+constexpr double noise_part = 0.25, weak = 0.003, noise_part_where_weak = 0.9;
 /// Noise scatters the densities of neighbours; residuals that scatter them less than this part of what noise would
 /// (relative variances, at most 1) are those of a shape too thin for its sampling, and where they scatter so many times
 /// more there is detail that noise hardly touches.
@@ -217,7 +218,8 @@ void mix(const Looks& looks, std::size_t i, AutomaticCurvature& result) {
 /// Whether noise is most of what the residuals tell, and matters.
 bool is_noisy(const Looks& looks, std::size_t i) {
     const double noise = noise_variance(looks.residual[i], looks.wide_residual[i]);
-    return noise > noise_part * looks.residual[i] && looks.expected[i] > negligible * negligible &&
+    const double part = looks.expected[i] < weak * weak ? noise_part_where_weak : noise_part;
+    return noise > part * looks.residual[i] && looks.expected[i] > negligible * negligible &&
            looks.scatter[i] > scatter_part * looks.expected[i] && looks.scatter[i] < detail_part * looks.expected[i] &&
            !on_grid(looks, i);
 }

@@ -1,5 +1,6 @@
 // `Estimator::automatic` on meshes: against the truth, against the one-ring estimators, invariances, odd meshes.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -79,6 +80,28 @@ TEST(AutoMesh, FitsStandWhereTheLaplacianOfTheDensityVanishes) {
     // Somewhere on each the average over the one-ring changes nothing, and so tells nothing of the one-ring's error.
     for (const Surface& s : {catenoid(1, 2, 132, 100), torus(1, 0.5, 280, 56), waves(1, 1, 0.05, 0.5, 160, 80)})
         EXPECT_LT(error_of(s, Estimator::automatic), 0.05 * best_of_one_rings(s)) << s.density.size();
+}
+
+TEST(AutoMesh, WhereResidualsVanishIsNoNoise) {
+    // The remainders of a monkey saddle change their sign along curves, beside which their variances scatter like those
+    // of noise.
+    constexpr int n = 120;
+    Array vertices, density;
+    Indices faces;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double x = 2.0 * i / (n - 1) - 1, y = 2.0 * j / (n - 1) - 1;
+            vertices.insert(vertices.end(), {x, y, (x * x * x - 3 * x * y * y) / 3});
+            const double zx = x * x - y * y, zy = -2 * x * y, zxx = 2 * x, zxy = -2 * y, w = 1 + zx * zx + zy * zy;
+            const double mean =
+                ((1 + zy * zy) * zxx - 2 * zx * zy * zxy - (1 + zx * zx) * zxx) / (2 * std::pow(w, 1.5));
+            density.push_back(4 * mean * mean + 2 * (zxx * zxx + zxy * zxy) / (w * w));
+            const std::int32_t at = i * n + j;
+            if (i + 1 < n && j + 1 < n) faces.insert(faces.end(), {at, at + n, at + 1, at + 1, at + n, at + n + 1});
+        }
+    const MeshCurvature result = by(Estimator::automatic, vertices, faces);
+    for (const std::uint8_t choice : result.choice) ASSERT_STREQ(choice_name(choice), "quartic 24");
+    EXPECT_LT(support::rmse(result.density, density), 1e-4);
 }
 
 TEST(AutoMesh, OneRingsTellTheirOwnError) {
