@@ -45,7 +45,7 @@ class FourLooks {
     void fit_chord_quartics(bool weighted, double level);
     void fit_equal_quartics();
     void tell_noise();
-    void widen(const LaneRange& range);
+    void widen(const LaneRange& range, FirstLook::Fit FirstLook::*which);
     void fit_weighted_quartics();
     void fit_monge_quartics();
 
@@ -119,7 +119,7 @@ void FourLooks::fit_quadrics() {
         look.normal = lane.jet.normal;
         // Nothing tells the remainder of a quadric alone: take it for as large as the value.
         const double density = squared_norm(lane.jet.tensor);
-        look.quadric = {lane.jet.tensor, density, density, FirstLook::nan};
+        look.quadric = {lane.jet.tensor, density, density};
         lane.look = look;
         lane.quartic_count = std::min(counts_[l], look_neighbors);
         lane.active = counts_[l] >= quartic_least;
@@ -181,12 +181,17 @@ void FourLooks::tell_noise() {
     });
 }
 
-/// Take the neighbours beyond those of the last quartics into them, too.
-void FourLooks::widen(const LaneRange& range) {
+/// Take the neighbours beyond those of the last quartics into them, too, to see what that changes.
+void FourLooks::widen(const LaneRange& range, FirstLook::Fit FirstLook::*which) {
     LaneRange more = range;
     for (int l = 0; l < fit_lanes; ++l) more.first[l] = lane_[l].quartic_count, more.last[l] = counts_[l];
     kernel_.quartic.collect(patches_.d, patches_, more, false, sums_);
     kernel_.quartic.solve(sums_, AtElement::zero, false, fields_);
+    for_active([&](int l, Lane& lane) {
+        if (lane.quartic_count == counts_[l] || !fields_.determined[l]) return;
+        FirstLook::Fit& fit = lane.look.*which;
+        fit.widened = fit.density - squared_norm(jet(l).tensor);
+    });
 }
 
 /// The quartic in chords with weights, in a view without slope.
@@ -199,7 +204,7 @@ void FourLooks::fit_weighted_quartics() {
     for_active([&](int, Lane& lane) {
         FirstLook& look = lane.look;
         const double chord = squared_norm(lane.jet.tensor);
-        look.chord = {lane.jet.tensor, chord, chord - lane.equal_density, FirstLook::nan};
+        look.chord = {lane.jet.tensor, chord, chord - lane.equal_density};
         // Unoriented normals of one surface differ by less than a right angle, or there is no telling.
         const double side = dot(look.normal, lane.jet.normal) < 0 ? -1 : 1;
         Symmetric3 quadric;
@@ -208,11 +213,7 @@ void FourLooks::fit_weighted_quartics() {
         look.quadric.change = look.quadric.density - chord;
         look.normal = lane.jet.normal;
     });
-    widen({{}, {}, Chart::chord, Weights::remainder});
-    for_active([&](int l, Lane& lane) {
-        if (lane.quartic_count < counts_[l] && fields_.determined[l])
-            lane.look.chord.widened = lane.look.chord.density - squared_norm(jet(l).tensor);
-    });
+    widen({{}, {}, Chart::chord, Weights::remainder}, &FirstLook::chord);
 }
 
 /// In Monge coordinates, with weights and without.
@@ -224,14 +225,9 @@ void FourLooks::fit_monge_quartics() {
     for_active([&](int l, Lane& lane) {
         lane.active = fields_.determined[l];
         const SurfaceJet monge = jet(l);
-        lane.look.monge = {carried(monge.tensor, monge.normal, lane.jet.normal), squared_norm(monge.tensor), 0,
-                           FirstLook::nan};
+        lane.look.monge = {carried(monge.tensor, monge.normal, lane.jet.normal), squared_norm(monge.tensor), 0};
     });
-    widen(range);
-    for_active([&](int l, Lane& lane) {
-        if (lane.quartic_count < counts_[l] && fields_.determined[l])
-            lane.look.monge.widened = lane.look.monge.density - squared_norm(jet(l).tensor);
-    });
+    widen(range, &FirstLook::monge);
     range.weights = Weights::equal;
     kernel_.quartic.collect(patches_.d, patches_, range, true, sums_);
     kernel_.quartic.solve(sums_, AtElement::datum, false, fields_);
