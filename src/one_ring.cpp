@@ -25,30 +25,39 @@ constexpr double explained = 4;
 constexpr double of_rough = 2;
 constexpr int reach = 8;  ///< steps of diffusion
 
-/// The neighbour of a vertex that lies most nearly opposite to another.
-std::size_t opposite(std::size_t vertex, Vec3 to, Points vertices, const VertexRings& rings) {
-    const Vec3 here = load(vertices[vertex]);
-    double least = 2;
-    std::size_t found = vertex;
-    for (const std::int32_t v : rings.around(vertex)) {
-        const Vec3 other = load(vertices[static_cast<std::size_t>(v)]) - here;
-        const double cosine = dot(to, other) / (length(to) * length(other));
-        if (cosine < least) least = cosine, found = static_cast<std::size_t>(v);
+/// The neighbours of a vertex, and where they are seen from it.
+struct Ring {
+    std::vector<std::size_t> vertex;
+    std::vector<Vec3> direction;  ///< unit
+
+    void look(std::size_t from, Points vertices, const VertexRings& rings) {
+        vertex.clear(), direction.clear();
+        for (const std::int32_t v : rings.around(from)) {
+            vertex.push_back(static_cast<std::size_t>(v));
+            direction.push_back(unit(load(vertices[vertex.back()]) - load(vertices[from])));
+        }
     }
-    return found;
-}
+    /// The one that lies most nearly opposite to another.
+    std::size_t opposite(std::size_t to) const {
+        double least = 2;
+        std::size_t found = to;
+        for (std::size_t j = 0; j < direction.size(); ++j) {
+            const double cosine = dot(direction[to], direction[j]);
+            if (cosine < least) least = cosine, found = j;
+        }
+        return vertex[found];
+    }
+};
 
 /// Half of the second differences of a field along the diameters of a one-ring.
 struct Bends {
     double mean, mean_square;
 };
-Bends bends(std::size_t vertex, Points vertices, const std::vector<double>& field, const VertexRings& rings) {
+Bends bends(std::size_t vertex, const Ring& ring, const std::vector<double>& field) {
     double sum = 0, squares = 0;
     int terms = 0;
-    for (const std::int32_t v : rings.around(vertex)) {
-        const auto to = static_cast<std::size_t>(v);
-        const std::size_t from = opposite(vertex, load(vertices[to]) - load(vertices[vertex]), vertices, rings);
-        const double bend = 0.5 * (field[to] + field[from]) - field[vertex];
+    for (std::size_t j = 0; j < ring.vertex.size(); ++j) {
+        const double bend = 0.5 * (field[ring.vertex[j]] + field[ring.opposite(j)]) - field[vertex];
         if (std::isfinite(bend)) sum += bend, squares += bend * bend, ++terms;
     }
     return {sum / terms, squares / terms};
@@ -73,9 +82,11 @@ void take_one_rings(Points vertices, Triangles faces, const VertexRings& rings, 
                               own = corrected_density(vertices, faces, mesh_normals, run);
     // Relative to the fits: squares of densities have no place among floats.
     std::vector<float> change(count, nan), difference(count, nan), blur(count, nan), square(count, nan);
+    Ring ring;
     for (std::size_t i = 0; i < count; ++i) {
         if ((found.choice[i] != clean && found.choice[i] != lowered) || !inside(i, rings)) continue;
-        const Bends bent = bends(i, vertices, own, rings);
+        ring.look(i, vertices, rings);
+        const Bends bent = bends(i, ring, own);
         blur[i] = static_cast<float>(std::pow(bent.mean * found.unit, 2));
         square[i] = static_cast<float>(bent.mean_square * found.unit * found.unit);
         if (found.choice[i] != clean) continue;

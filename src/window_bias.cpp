@@ -22,21 +22,6 @@ constexpr float missing_of_quadrics = 4, missing_of_quartics = 6;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
 constexpr int near_reach = 12;
 
-/// The densities averaged as often as a rung wants.
-template <class Steps>
-std::vector<float> averaged(const ElementGraph& graph, const Measured& measured, Steps&& wanted, const Execution& run) {
-    std::vector<float> smooth(measured.density.begin(), measured.density.end()), out(smooth);
-    int highest = -1, steps = 0;
-    for (const std::uint8_t choice : measured.choice) highest = std::max(highest, rung_of(choice));
-    for (int rung = 0; rung <= highest; ++rung) {
-        diffuse(smooth, graph, wanted(rung) - steps, run);
-        steps = wanted(rung);
-        for (std::size_t i = 0; i < out.size(); ++i)
-            if (rung_of(measured.choice[i]) == rung) out[i] = smooth[i];
-    }
-    return out;
-}
-
 /// So many at least, which is more than small windows take: the neighbours of an element do not lie evenly about it,
 /// and that is most of what a few averages change. How much more, by the squares of lengths, `share` tells.
 constexpr int fewest = 4;
@@ -50,24 +35,38 @@ float share(int rung, int neighbors) {
 }  // namespace
 
 void add_window_bias(const ElementGraph& graph, Measured& measured, const Execution& run) {
-    const auto by = [&](int neighbors, int times) {
-        return averaged(
-            graph, measured, [&](int rung) { return times * averages(rung, neighbors); }, run);
-    };
-    const std::vector<float> once = by(of_quadrics, 1), narrow = by(of_quartics, 1), wide = by(of_quartics, 2);
-    std::vector<float> bias(measured.density.size(), 0);
-    for (std::size_t i = 0; i < bias.size(); ++i) {
+    const std::size_t count = measured.density.size();
+    const auto quartic = [&](std::size_t i) { return family_of(measured.choice[i]) == Family::quartic; };
+    const auto neighbors = [&](std::size_t i) { return quartic(i) ? of_quartics : of_quadrics; };
+    // The densities averaged once by an element's window, and twice for quartics.
+    std::vector<float> smooth(measured.density.begin(), measured.density.end()), once(smooth), twice(smooth);
+    std::vector<int> wanted(count, 0);
+    int last = 0;
+    for (std::size_t i = 0; i < count; ++i) {
         const int rung = rung_of(measured.choice[i]);
         if (rung < 0) continue;
+        wanted[i] = averages(rung, neighbors(i));
+        last = std::max(last, (quartic(i) ? 2 : 1) * wanted[i]);
+    }
+    for (int step = 1; step <= last; ++step) {
+        diffuse(smooth, graph, 1, run);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (step == wanted[i]) once[i] = smooth[i];
+            if (step == 2 * wanted[i]) twice[i] = smooth[i];
+        }
+    }
+    std::vector<float> bias(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (wanted[i] == 0) continue;
         const auto density = static_cast<float>(measured.density[i]);
-        bias[i] = family_of(measured.choice[i]) == Family::quartic
-                      ? missing_of_quartics * std::pow(share(rung, of_quartics), 4.0F) *
-                            std::pow(density - 2 * narrow[i] + wide[i], 2.0F)
-                      : missing_of_quadrics * std::pow(share(rung, of_quadrics) * (density - once[i]), 2.0F);
+        const float part = share(rung_of(measured.choice[i]), neighbors(i));
+        bias[i] = quartic(i)
+                      ? missing_of_quartics * std::pow(part, 4.0F) * std::pow(density - 2 * once[i] + twice[i], 2.0F)
+                      : missing_of_quadrics * std::pow(part * (density - once[i]), 2.0F);
     }
     diffuse(bias, graph, near_reach, run);
-    for (std::size_t i = 0; i < bias.size(); ++i)
-        if (rung_of(measured.choice[i]) >= 0 && std::isfinite(bias[i])) measured.error[i] += bias[i];
+    for (std::size_t i = 0; i < count; ++i)
+        if (wanted[i] > 0 && std::isfinite(bias[i])) measured.error[i] += bias[i];
 }
 
 }  // namespace gaussmap
