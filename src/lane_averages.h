@@ -1,11 +1,12 @@
 // Averages of what quadrics found over the surface about four elements, a lane each: of their shape operators, and of
-// the slopes of their normals over their feet. Every lane does the same operations in the same order whatever the
-// others hold, so every instruction set gives the same bits.
+// the slopes of their normals over their feet; and sums for algebraic spheres. Every lane does the same operations in
+// the same order whatever the others hold, so every instruction set gives the same bits.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 
+#include "algebraic_sphere.h"
 #include "frame.h"
 #include "lane_fits.h"
 #include "slope_fit.h"
@@ -61,8 +62,22 @@ struct alignas(32) LaneAverages {
     }
 };
 
+/// Sums for the algebraic spheres over the wider window; places and normals in the frame, the former in units of it.
+struct alignas(32) LaneSpheres {
+    LaneValues sum[SphereSums::terms][SphereSums::parts];
+
+    SphereSums sums(int lane) const {
+        SphereSums of;
+        for (int t = 0; t < SphereSums::terms; ++t)
+            for (int i = 0; i < SphereSums::parts; ++i) of.sum[t][i] = sum[t][i][lane];
+        return of;
+    }
+};
+
 /// Of both windows. Samples that look elsewhere, or are not within the wider window, do not count.
-typedef void LaneAverageKernel(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2]);
+/// \param spheres  null where they are not wanted; then centres' unit is free.
+typedef void LaneAverageKernel(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
+                               LaneSpheres* spheres);
 extern LaneAverageKernel lane_averages_baseline;
 extern LaneAverageKernel lane_averages_avx2;
 

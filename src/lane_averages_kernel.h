@@ -46,10 +46,11 @@ struct Centres {
 
 /// A sample as it is seen from the centre.
 struct Sight {
-    Real u, v;  ///< its place in the tangent plane
-    Real normal_u, normal_v;
+    Real u, v, n;  ///< its place in the frame
+    Real normal_u, normal_v, normal_n;
     Real uu, uv, vv;  ///< its shape operator, turned
     Real weight[2];
+    Real known;  ///< its own weight
 };
 
 GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Centres& centre) {
@@ -69,7 +70,8 @@ GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Ce
     const Vector normal = sign * its_normal;
     Sight sight;
     sight.u = centre.unit * dot(d, centre.u), sight.v = centre.unit * dot(d, centre.v);
-    sight.normal_u = dot(normal, centre.u), sight.normal_v = dot(normal, centre.v);
+    sight.n = centre.unit * dot(d, centre.n);
+    sight.normal_u = dot(normal, centre.u), sight.normal_v = dot(normal, centre.v), sight.normal_n = cosine;
     // Tangents turned to the sample's plane: t goes to t − w (w·t) / (1 + cosine), w the sum of the normals.
     const Vector w = normal + centre.n;
     const Real c = 1 / (1 + cosine);
@@ -84,13 +86,14 @@ GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Ce
     sight.uu = sign * dot(a, ta), sight.uv = sign * dot(b, ta), sight.vv = sign * dot(b, tb);
     // Other sheets and far sides look elsewhere.
     const Mask seen = (cosine >= one_sheet) & (away < centre.reach);
-    const Real known = gather([&](const SurfaceSample& s) { return s.weight; });
+    sight.known = select(seen, gather([&](const SurfaceSample& s) { return s.weight; }), Real{});
     for (int m = 0; m < 2; ++m) {
         const Real weight = 1 - away * centre.inverse_reach[m];
-        sight.weight[m] = select(seen & (weight > 0), known * weight, Real{});
+        sight.weight[m] = select(seen & (weight > 0), sight.known * weight, Real{});
     }
     // What is not there is NaN, and would stay so with any weight.
-    for (Real* value : {&sight.u, &sight.v, &sight.normal_u, &sight.normal_v, &sight.uu, &sight.uv, &sight.vv})
+    for (Real* value : {&sight.u, &sight.v, &sight.n, &sight.normal_u, &sight.normal_v, &sight.normal_n, &sight.uu,
+                        &sight.uv, &sight.vv})
         *value = select(seen, *value, Real{});
     return sight;
 }
@@ -131,6 +134,37 @@ GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Sums& sums) {
     }
 }
 
+/// What a sample's place and normal come to in the sums for spheres.
+struct Term {
+    Real of[SphereSums::terms], part[SphereSums::parts];
+
+    GAUSSMAP_INLINE explicit Term(const Sight& a) {
+        const Real pp = a.u * a.u + a.v * a.v + a.n * a.n;
+        const Real s = 1 - pp, k = a.known, x = k * a.u, y = k * a.v, ks = k * s;
+        const Real terms[] = {all(1),     a.u,        a.v,
+                              a.n,        a.normal_u, a.normal_v,
+                              a.normal_n, pp,         a.u * a.normal_u + a.v * a.normal_v + a.n * a.normal_n};
+        const Real parts[] = {ks * s,  ks * a.u, ks * a.v, ks * a.n, ks,           x * a.u,
+                              x * a.v, x * a.n,  y * a.v,  y * a.n,  k * a.n * a.n};
+#pragma GCC unroll 11
+        for (int i = 0; i < SphereSums::parts; ++i) part[i] = parts[i];
+#pragma GCC unroll 9
+        for (int t = 0; t < SphereSums::terms; ++t) of[t] = terms[t];
+    }
+};
+
+GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Real (&sums)[SphereSums::terms][SphereSums::parts]) {
+    const Term of_a(a), of_b(b);
+    for (int t = 0; t < SphereSums::terms; ++t)
+#pragma GCC unroll 11
+        for (int i = 0; i < SphereSums::parts; ++i) sums[t][i] += of_a.of[t] * of_a.part[i] + of_b.of[t] * of_b.part[i];
+}
+
+void keep(const Real (&sums)[SphereSums::terms][SphereSums::parts], int lane, LaneSpheres& to) {
+    for (int t = 0; t < SphereSums::terms; ++t)
+        for (int i = 0; i < SphereSums::parts; ++i) store(&to.sum[t][i][lane], sums[t][i]);
+}
+
 void keep(const Sums& sums, int lane, LaneAverages& to) {
     store(&to.weight[lane], sums.weight);
     store(&to.count[lane], sums.count);
@@ -142,7 +176,8 @@ void keep(const Sums& sums, int lane, LaneAverages& to) {
     store(&to.square[lane], sums.square);
 }
 
-void average(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2]) {
+void average(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
+             LaneSpheres* spheres) {
     static const SurfaceSample nothing;
     for (int lane = 0; lane < fit_lanes; lane += lanes) {
         const Centres centre(centres, lane);
@@ -155,13 +190,16 @@ void average(const SurfaceSample* samples, const LaneCentres& centres, LaneAvera
             return see(at, centre);
         };
         Sums narrow = {}, wide = {};
+        Real sphere[SphereSums::terms][SphereSums::parts] = {};
         for (int s = 0; s < centres.count; s += 2) {
             const Sight a = sight(s), b = sight(s + 1);
             add<1>(a, b, wide);
+            if (spheres != nullptr) add(a, b, sphere);
             if (bits_of((a.weight[0] > 0) | (b.weight[0] > 0)) != 0) add<0>(a, b, narrow);
         }
         keep(narrow, lane, windows[0]);
         keep(wide, lane, windows[1]);
+        if (spheres != nullptr) keep(sphere, lane, *spheres);
     }
 }
 

@@ -129,7 +129,7 @@ std::optional<Estimate> interpolate(const Level& level, const Measured& known, s
     if (order == Order::quadric_or_plane && !curved) fit.plane(value);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
     const Symmetric3 tensor = {value[1], value[2], value[3], value[4], value[5], value[6]};
-    return Estimate{std::max(0.0, value[0]),         known.risk[from],  known.error[from], turned,
+    return Estimate{std::max(0.0, value[0]),         known.risk[from],  known.error[from], known.noise[from], turned,
                     carried(tensor, normal, turned), known.choice[from]};
 }
 
@@ -199,7 +199,7 @@ Measured nothing_measured(std::size_t count) {
     Measured measured;
     measured.density.assign(count, nan);
     measured.risk.assign(count, std::numeric_limits<float>::infinity());
-    measured.error = measured.risk;
+    measured.error = measured.noise = measured.risk;
     measured.weight.assign(count, 0);
     measured.normal.assign(count, Vec3{nan, nan, nan});
     measured.tensor.resize(count);
@@ -228,7 +228,7 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
     }
     measured.weight[i] += weight;
     if (!best) return;
-    measured.risk[i] = estimate.risk, measured.error[i] = estimate.error;
+    measured.risk[i] = estimate.risk, measured.error[i] = estimate.error, measured.noise[i] = estimate.noise;
     measured.normal[i] = estimate.normal;
     measured.choice[i] = estimate.choice;
 }

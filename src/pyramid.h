@@ -39,6 +39,7 @@ struct Measured {
     std::vector<float>
         risk;  ///< what the density is chosen by: its squared error, feared; infinite where there is none
     std::vector<float> error;    ///< squared, expected
+    std::vector<float> noise;    ///< its part by noise
     std::vector<double> weight;  ///< what all that was mixed counts
     std::vector<Vec3> normal;
     std::vector<Symmetric3> tensor;
@@ -50,7 +51,7 @@ Measured nothing_measured(std::size_t count);
 /// What a fit makes of an element.
 struct Estimate {
     double density;
-    float risk, error;  ///< as of `Measured`
+    float risk, error, noise;  ///< as of `Measured`
     Vec3 normal;
     Symmetric3 tensor;
     std::uint8_t choice;

@@ -21,6 +21,14 @@ LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
 }
 
+Symmetric3 in_plane(const Frame& frame, double uu, double uv, double vv) {
+    Symmetric3 tensor;
+    add_product(tensor, uu, frame.u, frame.u);
+    add_product(tensor, 2 * uv, frame.u, frame.v);
+    add_product(tensor, vv, frame.v, frame.v);
+    return tensor;
+}
+
 /// Weighted sums in place of counts: the sandwich covariance of a fit with smoothing weights relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
 /// falls little at borders).
@@ -85,7 +93,7 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
             }
             found.half_size[i] = static_cast<float>(length(windows.neighbor(static_cast<int>(k) / 2 - 1)));
             const std::size_t stride = samples_stride(k);
-            std::int32_t* to = samples_.data() + i * most_samples;
+            std::int32_t* to = samples_.data() + i * most_samples_;
             for (std::size_t j = 0; j < k; j += stride, ++to)
                 *to = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1;
             in_lane[windows.filled()] = i;
@@ -182,11 +190,29 @@ void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled,
         centres.set(l, frame_about(found.normal[i]), level_.foot_of(i));
         centres.unit[l] = 1 / whole;
         centres.reach[0][l] = half * half, centres.reach[1][l] = whole * whole;
-        centres.samples[l] = samples_.data() + i * most_samples;
+        centres.samples[l] = samples_.data() + i * most_samples_;
     }
     LaneAverages windows[2];
-    best_lane_averages()(samples.data(), centres, windows);
-    for (int l = 0; l < filled; ++l) keep(who[l], l, samples[who[l]].weight, windows, centres, found);
+    LaneSpheres spheres;
+    const bool with_spheres = families_tried(elements_) > static_cast<int>(Family::sphere);
+    best_lane_averages()(samples.data(), centres, windows, with_spheres ? &spheres : nullptr);
+    for (int l = 0; l < filled; ++l) {
+        const double own = samples[who[l]].weight;
+        keep(who[l], l, own, windows, centres, found);
+        if (with_spheres) keep_sphere(who[l], own, centres.unit[l], spheres.sums(l), found);
+    }
+}
+
+/// The level set through the foot, seen along the quadric's normal.
+void RungFits::keep_sphere(std::size_t i, double own, double unit, SphereSums sums, Rung& found) {
+    constexpr Vec3 up = {0, 0, 1};
+    sums.add({0, 0, 0}, up, own);
+    const LevelSet level_set = sums.level_set();
+    if (!(level_set.normal.z > one_sheet)) return;
+    const Symmetric3 seen = carried(level_set.tensor, level_set.normal, up);
+    const Symmetric3 tensor = in_plane(frame_about(found.normal[i]), unit * seen.xx, unit * seen.xy, unit * seen.yy);
+    found.tensor[static_cast<int>(Family::sphere)][i] = tensor;
+    found.density[static_cast<int>(Family::sphere)][i] = static_cast<float>(squared_norm(tensor));
 }
 
 /// The mean of the quadrics' shape operators, the element's own among them, and the slopes of their normals over their
@@ -195,20 +221,13 @@ void RungFits::keep(std::size_t i, int lane, double own, const LaneAverages (&wi
                     Rung& found) {
     const Frame frame = frame_about(found.normal[i]);
     const double unit = centres.unit[lane];
-    const auto in_plane = [&](double uu, double uv, double vv) {
-        Symmetric3 tensor;
-        add_product(tensor, uu, frame.u, frame.u);
-        add_product(tensor, 2 * uv, frame.u, frame.v);
-        add_product(tensor, vv, frame.v, frame.v);
-        return tensor;
-    };
     for (int m = 0; m < 2; ++m) {
         const LaneAverages& window = windows[m];
         const auto mean = static_cast<int>(m == 0 ? Family::half_mean : Family::mean);
         const double share = 1 / (own + window.weight[lane]);
         Symmetric3 tensor;
         add(tensor, own * share, found.tensor[static_cast<int>(Family::quadric)][i]);
-        add(tensor, share, in_plane(window.tensor[0][lane], window.tensor[1][lane], window.tensor[2][lane]));
+        add(tensor, share, in_plane(frame, window.tensor[0][lane], window.tensor[1][lane], window.tensor[2][lane]));
         found.tensor[mean][i] = tensor;
         found.density[mean][i] = static_cast<float>(squared_norm(tensor));
         const SlopeFit slopes = window.slopes(lane, own);
@@ -216,7 +235,7 @@ void RungFits::keep(std::size_t i, int lane, double own, const LaneAverages (&wi
         if (slopes.count() < 10 || !slopes.solve<5>(fit)) continue;
         const auto slope = static_cast<int>(m == 0 ? Family::half_slope : Family::slope);
         const Symmetric3 shape =
-            in_plane(unit * fit.s[0][0], unit * (0.5 * (fit.s[0][1] + fit.s[1][0])), unit * fit.s[1][1]);
+            in_plane(frame, unit * fit.s[0][0], unit * (0.5 * (fit.s[0][1] + fit.s[1][0])), unit * fit.s[1][1]);
         found.tensor[slope][i] = shape;
         found.density[slope][i] = static_cast<float>(squared_norm(shape));
         // Over a disc filled evenly Σ w u² = n h² / 12.

@@ -67,7 +67,8 @@ class RungFits {
           active_(active),
           run_{run.threads, {}},
           index_(Points(level.position), run_),
-          samples_(level.count() * most_samples, -1) {}
+          most_samples_(elements.connected || level.members == 1 ? 96 : 216),
+          samples_(level.count() * most_samples_, -1) {}
 
     /// The finds of a rung, fitted and averaged, at the active elements.
     Rung step(int rung);
@@ -78,7 +79,7 @@ class RungFits {
         return static_cast<std::size_t>(rung_neighbors(rung) / static_cast<int>(level_.members));
     }
     /// Of how many in a window one is a sample.
-    static std::size_t samples_stride(std::size_t window) { return (window + most_samples - 1) / most_samples; }
+    std::size_t samples_stride(std::size_t window) const { return (window + most_samples_ - 1) / most_samples_; }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
     void keep_rings(int rung);
@@ -89,10 +90,9 @@ class RungFits {
     void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
                           const std::vector<SurfaceSample>& samples, Rung& found);
     double precision(std::size_t i, int rung, const Rung& found) const;
+    void keep_sphere(std::size_t i, double own, double unit, SphereSums sums, Rung& found);
     void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
               Rung& found);
-
-    static constexpr int most_samples = 96;  ///< of an average
 
     const Elements& elements_;
     Level& level_;
@@ -101,7 +101,8 @@ class RungFits {
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width_` neighbours of each element
     std::size_t ring_width_ = 0;
-    std::vector<std::int32_t> samples_;  ///< `most_samples` of each element's window, nearest first, −1 for itself
+    std::size_t most_samples_;           ///< of an average
+    std::vector<std::int32_t> samples_;  ///< `most_samples_` of each element's window, nearest first, −1 for itself
 };
 
 }  // namespace gaussmap

@@ -46,7 +46,12 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23},
                                                   {0.08, 0.35, 0.36, 0.22},
                                                   {0.20, 0.30, 0.36, 0.36},
                                                   {0.09, 0.28, 0.32, 0.32},
-                                                  {1, 0.50, 0.78, 0.78}}};
+                                                  {1, 0.50, 0.78, 0.78},
+                                                  {0.62, 0.33, 1.4, 1.4}}};
+
+/// Level sets of spheres are exact on spheres and nearly so along circles; their bias sets in late, and then more than
+/// doubles from rung to rung. Told is what slower growth would mean.
+constexpr double sphere_growth_told = 0.6;
 
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
@@ -54,7 +59,7 @@ constexpr bool of_quartic(int family) {
 
 /// Variance of a family's value relative to the fit's.
 double relative_variance(const Rung& rung, int family, std::size_t i) {
-    const double even = traits[static_cast<std::size_t>(family)].variance;
+    const double even = traits[static_cast<std::size_t>(family)].variance;  // of spheres, at borders too
     if (family == static_cast<int>(Family::half_slope)) return even * rung.spread[0][i];
     if (family == static_cast<int>(Family::slope)) return even * rung.spread[1][i];
     return even;
@@ -112,8 +117,9 @@ struct Changes {
 /// One level's part of the climb.
 class Ladder {
   public:
-    Ladder(const Level& level, Standing& standing, Measured& measured, const Execution& run)
-        : level_(level), standing_(standing), measured_(measured), run_{run.threads, {}} {}
+    /// \param tried  how many families, the first ones.
+    Ladder(const Level& level, int tried, Standing& standing, Measured& measured, const Execution& run)
+        : level_(level), tried_(tried), standing_(standing), measured_(measured), run_{run.threads, {}} {}
 
     /// Weigh the finds of a rung by what the next one changes.
     void weigh(int rung, const Rung& lower, const Rung& upper);
@@ -125,6 +131,7 @@ class Ladder {
     void weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes);
 
     const Level& level_;
+    const int tried_;
     Standing& standing_;
     Measured& measured_;
     Execution run_;
@@ -177,7 +184,7 @@ Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
     const Field& noise = standing_.noise;
     Changes changes;
     std::vector<Field*> variances, squares, densities;
-    for (int family = 0; family < families; ++family) {
+    for (int family = 0; family < tried_; ++family) {
         const int q = of_quartic(family) ? 1 : 0;
         Field& variance = changes.variance[family];
         variance.resize(count);
@@ -191,7 +198,7 @@ Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
         densities.push_back(&changes.around[family]);
     }
     diffuse(variances, level_.graph, reach_of_variances, run_);
-    for (int family = 0; family < families; ++family) {
+    for (int family = 0; family < tried_; ++family) {
         const double known = traits[static_cast<std::size_t>(family)].change;
         changes.square[family].resize(count);
         for (std::size_t i = 0; i < count; ++i) {
@@ -226,13 +233,15 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
         const double expected = known.change * variance[i];
         const double growth = bias_growth(lower, family, i);
-        const double by_noise = variance[i], to_bias = expected / (growth * growth);
-        const auto squared_error = [&](double more) {
-            return static_cast<float>(by_noise + std::max<double>(to_bias * more, known_bias[i]));
+        const double by_noise = variance[i];
+        const auto squared_error = [&](double more, double growth_of_bias) {
+            const double bias = expected / (growth_of_bias * growth_of_bias) * more;
+            return static_cast<float>(by_noise + std::max<double>(bias, known_bias[i]));
         };
-        const float risk = squared_error(std::max(change[i], near[i] - not_feared_near));
+        const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
         // What is told of the error is only what is not usual of noise.
-        const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}));
+        const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}),
+                                          family == static_cast<int>(Family::sphere) ? sphere_growth_told : growth);
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything. The value is not more than the
         // mean's, which noise raises least: that of slopes near a border may be all noise.
@@ -250,9 +259,13 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
             if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
-        const Estimate estimate = {
-            std::max(0.0, unbiased(lower, family, noise, i)), risk, error, lower.normal[i], lower.tensor[family][i],
-            rung_choice(rung, static_cast<Family>(family))};
+        const Estimate estimate = {std::max(0.0, unbiased(lower, family, noise, i)),
+                                   risk,
+                                   error,
+                                   static_cast<float>(by_noise),
+                                   lower.normal[i],
+                                   lower.tensor[family][i],
+                                   rung_choice(rung, static_cast<Family>(family))};
         mix(estimate, weight_of(of_quartic(family) && wide ? quartic_share * risk : risk), i, measured_);
     }
 }
@@ -263,7 +276,7 @@ void Ladder::weigh(int rung, const Rung& lower, const Rung& upper) {
     diffuse({&residual[0], &residual[1], &wider}, level_.graph, reach_of_variances, run_);
     estimate_noise(rung, lower, residual[1], wider);
     const Changes changes = find_changes(lower, upper);
-    for (int family = 0; family < families; ++family)
+    for (int family = 0; family < tried_; ++family)
         weigh_family(rung, family, lower, residual[of_quartic(family) ? 1 : 0], changes);
 }
 
@@ -273,7 +286,7 @@ void Ladder::let_go() {
     std::vector<std::uint8_t> wanted(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i]) continue;
-        for (int family = 0; family < families; ++family) wanted[i] |= standing_.dead[family][i] ? 0 : 1;
+        for (int family = 0; family < tried_; ++family) wanted[i] |= standing_.dead[family][i] ? 0 : 1;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i] || wanted[i]) continue;
@@ -303,7 +316,7 @@ Measured measured_so_far(const AutomaticCurvature& result) {
             measured.risk[i] = static_cast<float>(result.error[i] * result.error[i]);
             measured.weight[i] = weight_of(measured.risk[i]);
         }
-    measured.error = measured.risk;
+    measured.error = measured.noise = measured.risk;
     measured.density = result.density, measured.normal = result.normal;
     measured.tensor = result.tensor, measured.choice = result.choice;
     return measured;
@@ -344,7 +357,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     Rung lower;
     for (int rung = 0; rung < most_rungs;) {
         RungFits fits(elements, levels.back(), standing.active, run);
-        Ladder ladder(levels.back(), standing, measured.back(), run);
+        Ladder ladder(levels.back(), families_tried(elements), standing, measured.back(), run);
         const int level = level_of(rung);
         bool on = true;
         for (; rung < most_rungs && level_of(rung) == level; ++rung) {

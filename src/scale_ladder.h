@@ -10,9 +10,13 @@
 namespace gaussmap {
 
 /// What is tried on every rung: a quadric and a quartic in chords; the quadric's shape operator averaged over half the
-/// neighbours it was fitted to, and over all of them; the slopes of the quadrics' normals over the same.
-enum class Family : std::uint8_t { quadric, half_mean, mean, half_slope, slope, quartic };
-constexpr int families = 6;
+/// neighbours it was fitted to, and over all of them; the slopes of the quadrics' normals over the same; on clouds the
+/// surface of algebraic spheres.
+enum class Family : std::uint8_t { quadric, half_mean, mean, half_slope, slope, quartic, sphere };
+constexpr int families = 7;
+inline int families_tried(const Elements& elements) {
+    return elements.connected ? static_cast<int>(Family::sphere) : families;
+}
 
 /// Elements that a rung's fits stand on, from 0 up: threefold in three steps.
 int rung_neighbors(int rung);

@@ -18,7 +18,9 @@ namespace {
 /// window 1 − (1 − K)² does, K being half as wide.
 constexpr int of_quadrics = 60, of_quartics = 120;
 /// What is missing, squared, relative to what goes at second sight.
-constexpr float missing_of_quadrics = 4, missing_of_quartics = 6;
+constexpr float missing_of_quadrics = 5, missing_of_quartics = 6;
+/// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
+constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
 constexpr int near_reach = 12;
 
@@ -66,7 +68,8 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
     }
     diffuse(bias, graph, near_reach, run);
     for (std::size_t i = 0; i < count; ++i)
-        if (wanted[i] > 0 && std::isfinite(bias[i])) measured.error[i] += bias[i];
+        if (wanted[i] > 0 && std::isfinite(bias[i]))
+            measured.error[i] += std::max(0.0F, bias[i] - missing_of_noise * measured.noise[i]);
 }
 
 }  // namespace gaussmap

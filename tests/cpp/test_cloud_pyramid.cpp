@@ -67,13 +67,14 @@ TEST(Pyramid, MixesByWeightAndTellsOfTheBest) {
         const float risk = e == 4 ? 0 : static_cast<float>(0.1 + random.uniform());
         // Either side of the surface.
         const double side = e % 2 == 0 ? 1 : -1;
-        mix({2 * k * k, risk, 2 * risk, side * pole, across(pole, side * k), static_cast<std::uint8_t>(e)}, weight, 0,
-            measured);
+        mix({2 * k * k, risk, 2 * risk, 0.5F * risk, side * pole, across(pole, side * k), static_cast<std::uint8_t>(e)},
+            weight, 0, measured);
         sum += weight * 2 * k * k, weights += weight, curvature += weight * k;
         if (weight > 0) best = std::min(best, risk);
         EXPECT_NEAR(measured.density[0], sum / weights, 1e-12);
         EXPECT_EQ(measured.risk[0], best) << "an estimate without weight is none";
         EXPECT_EQ(measured.error[0], 2 * best);
+        EXPECT_EQ(measured.noise[0], 0.5F * best);
         EXPECT_NEAR(measured.tensor[0].xx * measured.normal[0].z, curvature / weights, 1e-12);
     }
     EXPECT_NEAR(measured.weight[0], weights, 1e-12);
@@ -85,10 +86,10 @@ TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
     ASSERT_EQ(coarse.count(), 200U);
     Measured above = nothing_measured(coarse.count()), below = nothing_measured(fine.count());
     for (std::size_t g = 0; g < coarse.count(); ++g)
-        mix({density_at(coarse.foot_of(g)), 0.01F, 0.02F, coarse.normal[g], across(coarse.normal[g], 1), 20}, 3, g,
-            above);
+        mix({density_at(coarse.foot_of(g)), 0.01F, 0.02F, 0.005F, coarse.normal[g], across(coarse.normal[g], 1), 20}, 3,
+            g, above);
     for (std::size_t i = 0; i < fine.count(); ++i)
-        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, fine.normal[i], across(fine.normal[i], 1), 17}, 1, i,
+        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, 0.05F, fine.normal[i], across(fine.normal[i], 1), 17}, 1, i,
             below);
     refine(coarse, above, fine, below, {1, {}});
     for (std::size_t i = 0; i < fine.count(); ++i) {
@@ -96,6 +97,7 @@ TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
         EXPECT_NEAR(below.density[i], density_at(fine.foot_of(i)) + 0.1, 0.02) << i;
         EXPECT_EQ(below.choice[i], 20);
         EXPECT_EQ(below.error[i], 0.02F);
+        EXPECT_EQ(below.noise[i], 0.005F);
         EXPECT_DOUBLE_EQ(below.weight[i], 4);
     }
 }
@@ -104,7 +106,7 @@ TEST(Pyramid, OnlyThoseBorrowWhoDoNotKnowTheSize) {
     const Level level = sphere_level(60);
     Measured measured = nothing_measured(level.count());
     const auto put = [&](std::size_t i, double density, float risk) {
-        mix({density, risk, risk, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
+        mix({density, risk, risk, 0.5F * risk, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
     };
     for (std::size_t i = 0; i < level.count(); ++i) put(i, 2, 0.001F);
     measured.risk[7] = measured.error[7] = 0.1F, measured.density[7] = 2.2;  // worse than all, but good enough
