@@ -164,6 +164,9 @@ constexpr float not_feared_near = 1;
 /// more.
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
+/// Residuals, relative to the noise, up to which a surface was met alone. Level sets hold a little longer than the
+/// quadrics whose feet and normals they are made of.
+constexpr double fitting_quadrics = 2, fitting_spheres = 2.5;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -223,11 +226,13 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                 &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
     const bool wide = level_.members >= members_where_wide;
+    const double fitting = family == static_cast<int>(Family::sphere) ? fitting_spheres : fitting_quadrics;
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
         // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
-        const bool misfit = rung > 0 && residual[i] > 2 * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
+        const bool misfit =
+            rung > 0 && residual[i] > fitting * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
