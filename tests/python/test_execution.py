@@ -74,7 +74,7 @@ def test_progress_rises_to_one_and_cancels(call):
     fractions = []
     call(fractions.append)
     assert fractions == sorted(fractions) and fractions[-1] == 1.0 and all(0 <= f <= 1 for f in fractions)
-    assert len(fractions) > 2
+    assert fractions[0] < 1
     with pytest.raises(gaussmap.Cancelled, match="cancelled"):
         call(lambda fraction: False)
 
