@@ -53,6 +53,14 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23},
 /// doubles from rung to rung. Told is what slower growth would mean.
 constexpr double sphere_growth_told = 0.6;
 
+/// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
+/// of what their shape operator has beside its mean: variance of |S|².
+double uneven_variance(const Symmetric3& shape, int samples) {
+    constexpr double part = 0.2;
+    const double density = squared_norm(shape), sum = shape.xx + shape.yy + shape.zz;
+    return part * 4 * density * std::max(0.0, density - 0.5 * sum * sum) / samples;
+}
+
 constexpr bool of_quartic(int family) {
     return family == static_cast<int>(Family::quartic);
 }
@@ -127,7 +135,7 @@ class Ladder {
 
   private:
     void estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider);
-    Changes find_changes(const Rung& lower, const Rung& upper);
+    Changes find_changes(int rung, const Rung& lower, const Rung& upper);
     void weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes);
 
     const Level& level_;
@@ -182,7 +190,7 @@ double unbiased(const Rung& on, int family, const Field& noise, std::size_t i) {
 }
 
 /// All families together, as averages over the surface nearby take less time so.
-Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
+Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
     Changes changes;
@@ -195,6 +203,8 @@ Changes Ladder::find_changes(const Rung& lower, const Rung& upper) {
             // The square of what noise adds to the density is of second order, and counts where it is not small.
             const double part = noise[i] * relative_variance(lower, family, i), second = part * lower.trace[q][i];
             variance[i] = static_cast<float>(part * lower.variance[q][i] + second * second);
+            if (family == static_cast<int>(Family::sphere) && level_.members == 1)
+                variance[i] += static_cast<float>(uneven_variance(lower.tensor[family][i], rung_neighbors(rung)));
         }
         changes.around[family] = lower.density[family];
         variances.push_back(&variance), squares.push_back(&changes.square[family]);
@@ -280,7 +290,7 @@ void Ladder::weigh(int rung, const Rung& lower, const Rung& upper) {
     Field wider = upper.residual[1];
     diffuse({&residual[0], &residual[1], &wider}, level_.graph, reach_of_variances, run_);
     estimate_noise(rung, lower, residual[1], wider);
-    const Changes changes = find_changes(lower, upper);
+    const Changes changes = find_changes(rung, lower, upper);
     for (int family = 0; family < tried_; ++family)
         weigh_family(rung, family, lower, residual[of_quartic(family) ? 1 : 0], changes);
 }
