@@ -75,7 +75,7 @@ struct alignas(32) LaneSpheres {
 };
 
 /// Of both windows. Samples that look elsewhere, or are not within the wider window, do not count.
-/// \param spheres  null where they are not wanted; then centres' unit is free.
+/// \param spheres  null where they are not wanted; else places in units of the wider window are asked for.
 typedef void LaneAverageKernel(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
                                LaneSpheres* spheres);
 extern LaneAverageKernel lane_averages_baseline;

@@ -67,7 +67,7 @@ class RungFits {
           active_(active),
           run_{run.threads, {}},
           index_(Points(level.position), run_),
-          most_samples_(elements.connected || level.members == 1 ? 96 : 216),
+          most_samples_(elements.connected || level.members == 1 ? few_samples : all_samples),
           samples_(level.count() * most_samples_, -1) {}
 
     /// The finds of a rung, fitted and averaged, at the active elements.
@@ -101,6 +101,8 @@ class RungFits {
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width_` neighbours of each element
     std::size_t ring_width_ = 0;
+    /// Level sets of spheres are second derivatives, and ask for every element of a coarser level's window.
+    static constexpr std::size_t few_samples = 96, all_samples = 216;
     std::size_t most_samples_;           ///< of an average
     std::vector<std::int32_t> samples_;  ///< `most_samples_` of each element's window, nearest first, −1 for itself
 };
