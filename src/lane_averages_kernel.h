@@ -137,24 +137,17 @@ GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Sums& sums) {
 /// What a sample's place and normal come to in the sums for spheres.
 struct Term {
     Real of[SphereSums::terms], part[SphereSums::parts];
-
-    GAUSSMAP_INLINE explicit Term(const Sight& a) {
-        const Real pp = a.u * a.u + a.v * a.v + a.n * a.n;
-        const Real s = 1 - pp, k = a.known, x = k * a.u, y = k * a.v, ks = k * s;
-        const Real terms[] = {all(1),     a.u,        a.v,
-                              a.n,        a.normal_u, a.normal_v,
-                              a.normal_n, pp,         a.u * a.normal_u + a.v * a.normal_v + a.n * a.normal_n};
-        const Real parts[] = {ks * s,  ks * a.u, ks * a.v, ks * a.n, ks,           x * a.u,
-                              x * a.v, x * a.n,  y * a.v,  y * a.n,  k * a.n * a.n};
-#pragma GCC unroll 11
-        for (int i = 0; i < SphereSums::parts; ++i) part[i] = parts[i];
-#pragma GCC unroll 9
-        for (int t = 0; t < SphereSums::terms; ++t) of[t] = terms[t];
-    }
 };
 
+GAUSSMAP_INLINE Term term(const Sight& a) {
+    const Real pp = a.u * a.u + a.v * a.v + a.n * a.n, pn = a.u * a.normal_u + a.v * a.normal_v + a.n * a.normal_n;
+    const Real s = 1 - pp, k = a.known, x = k * a.u, y = k * a.v, ks = k * s;
+    return {{all(1), a.u, a.v, a.n, a.normal_u, a.normal_v, a.normal_n, pp, pn},
+            {ks * s, ks * a.u, ks * a.v, ks * a.n, ks, x * a.u, x * a.v, x * a.n, y * a.v, y * a.n, k * a.n * a.n}};
+}
+
 GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Real (&sums)[SphereSums::terms][SphereSums::parts]) {
-    const Term of_a(a), of_b(b);
+    const Term of_a = term(a), of_b = term(b);
     for (int t = 0; t < SphereSums::terms; ++t)
 #pragma GCC unroll 11
         for (int i = 0; i < SphereSums::parts; ++i) sums[t][i] += of_a.of[t] * of_a.part[i] + of_b.of[t] * of_b.part[i];

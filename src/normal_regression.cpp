@@ -87,9 +87,7 @@ FittedCurvature normal_regression(const Elements& elements, int k, const Element
             lowered_in[block] += !quadratic || (!normals.lowered.empty() && normals.lowered[i] != 0);
             const double scale = around.scale;
             const Symmetric2 s = {scale * fit.s[0][0], scale * 0.5 * (fit.s[0][1] + fit.s[1][0]), scale * fit.s[1][1]};
-            add_product(result.tensor[i], s.uu, frame.u, frame.u);
-            add_product(result.tensor[i], 2 * s.uv, frame.u, frame.v);
-            add_product(result.tensor[i], s.vv, frame.v, frame.v);
+            result.tensor[i] = in_plane(frame, s.uu, s.uv, s.vv);
             result.density[i] = s.uu * s.uu + 2 * s.uv * s.uv + s.vv * s.vv;
             if (error) {
                 const double down = 1 / scale;

@@ -21,14 +21,6 @@ LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
 }
 
-Symmetric3 in_plane(const Frame& frame, double uu, double uv, double vv) {
-    Symmetric3 tensor;
-    add_product(tensor, uu, frame.u, frame.u);
-    add_product(tensor, 2 * uv, frame.u, frame.v);
-    add_product(tensor, vv, frame.v, frame.v);
-    return tensor;
-}
-
 /// Weighted sums in place of counts: the sandwich covariance of a fit with smoothing weights relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
 /// falls little at borders).

@@ -40,14 +40,16 @@ struct Traits {
     /// The same at borders, where the bias of quadrics and means grows with h, as odd orders do not cancel over half
     /// discs: at most the growth of h less 1, 0.2, and a little more where even ones are as large.
     double bias_at_border;
+    double
+        fitting;  ///< residuals of its quadrics or quartics, relative to the noise, up to which a surface was met alone
 };
-constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23},
-                                                  {0.24, 0.31, 0.38, 0.23},
-                                                  {0.08, 0.35, 0.36, 0.22},
-                                                  {0.20, 0.30, 0.36, 0.36},
-                                                  {0.09, 0.28, 0.32, 0.32},
-                                                  {1, 0.50, 0.78, 0.78},
-                                                  {0.62, 0.33, 1.4, 1.4}}};
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 2},
+                                                  {0.24, 0.31, 0.38, 0.23, 2},
+                                                  {0.08, 0.35, 0.36, 0.22, 2},
+                                                  {0.20, 0.30, 0.36, 0.36, 2},
+                                                  {0.09, 0.28, 0.32, 0.32, 2},
+                                                  {1, 0.50, 0.78, 0.78, 2},
+                                                  {0.62, 0.33, 1.4, 1.4, 2.5}}};
 
 /// Level sets of spheres are exact on spheres and nearly so along circles; their bias sets in late, and then more than
 /// doubles from rung to rung. Told is what slower growth would mean.
@@ -172,9 +174,6 @@ constexpr float not_feared_near = 1;
 /// more.
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
-/// Residuals, relative to the noise, up to which a surface was met alone. Level sets hold a little longer than the
-/// quadrics whose feet and normals they are made of.
-constexpr double fitting_quadrics = 2, fitting_spheres = 2.5;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -236,13 +235,12 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                 &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
     const bool wide = level_.members >= members_where_wide;
-    const double fitting = family == static_cast<int>(Family::sphere) ? fitting_spheres : fitting_quadrics;
     for (std::size_t i = 0; i < count; ++i) {
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
         // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
         const bool misfit =
-            rung > 0 && residual[i] > fitting * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
+            rung > 0 && residual[i] > known.fitting * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.

@@ -38,6 +38,15 @@ inline void add_product(Symmetric3& sum, double factor, Vec3 a, Vec3 b) {
     sum.yz += h * (a.y * b.z + a.z * b.y);
 }
 
+/// A tensor of the tangent plane from its entries over the frame's u and v.
+inline Symmetric3 in_plane(const Frame& frame, double uu, double uv, double vv) {
+    Symmetric3 tensor;
+    add_product(tensor, uu, frame.u, frame.u);
+    add_product(tensor, 2 * uv, frame.u, frame.v);
+    add_product(tensor, vv, frame.v, frame.v);
+    return tensor;
+}
+
 /// A tensor of the tangent plane across `from`, carried to that across `to` by the smallest rotation that does so.
 /// With w = from + to and c = 1 + from·to, a tangent t goes to t − w (w·t) / c, as (from·t) = 0.
 inline Symmetric3 carried(const Symmetric3& a, Vec3 from, Vec3 to) {

@@ -14,6 +14,9 @@ import gaussmap
 
 MESH = gaussmap.shapes.bumpy(subdivisions=6)
 CLOUD = gaussmap.shapes.bumpy(subdivisions=4, noise=0.1).vertices
+# For what would be done with the smaller ones before a clock is looked at twice.
+LARGE_MESH = gaussmap.shapes.bumpy(subdivisions=7)
+LARGE_CLOUD = gaussmap.shapes.bumpy(subdivisions=6, noise=0.1).vertices
 
 
 def test_another_thread_runs_meanwhile():
@@ -63,9 +66,9 @@ def test_two_calls_run_side_by_side():
 @pytest.mark.parametrize(
     "call",
     [
-        lambda p: gaussmap.curvature(CLOUD, progress=p),
-        lambda p: gaussmap.decimate(MESH, faces=5000, progress=p),
-        lambda p: gaussmap.sample(MESH, count=20000, progress=p),
+        lambda p: gaussmap.curvature(LARGE_CLOUD, progress=p),
+        lambda p: gaussmap.decimate(LARGE_MESH, faces=5000, progress=p),
+        lambda p: gaussmap.sample(LARGE_MESH, count=60000, progress=p),
         lambda p: gaussmap.compare(MESH, gaussmap.shapes.sphere(subdivisions=6), samples=300_000, progress=p),
     ],
     ids=["curvature", "decimate", "sample", "compare"],
@@ -74,7 +77,7 @@ def test_progress_rises_to_one_and_cancels(call):
     fractions = []
     call(fractions.append)
     assert fractions == sorted(fractions) and fractions[-1] == 1.0 and all(0 <= f <= 1 for f in fractions)
-    assert fractions[0] < 1
+    assert len(fractions) > 2
     with pytest.raises(gaussmap.Cancelled, match="cancelled"):
         call(lambda fraction: False)
 
