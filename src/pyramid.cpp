@@ -191,6 +191,8 @@ Level coarsened(Level& level, const Execution& run) {
     const NeighborIndex feet(Points(above.foot), run);
     build_graph(above, feet, run);
     level.parent = feet.nearest(Points(level.foot), 1, false, run).index;
+    above.area.assign(groups, 0);
+    for (std::size_t i = 0; i < count; ++i) above.area[static_cast<std::size_t>(level.parent[i])] += level.area[i];
     return above;
 }
 

@@ -148,7 +148,7 @@ void RungFits::average(int rung, Rung& found) {
             samples[i] = {{normal.x, normal.y, normal.z},
                           {level_.foot[3 * i], level_.foot[3 * i + 1], level_.foot[3 * i + 2]},
                           {t.xx, t.xy, t.xz, t.yy, t.yz, t.zz},
-                          precision(i, rung, found)};
+                          precision(i, rung, found) * double(level_.area[i])};
         }
     });
     for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
@@ -162,13 +162,14 @@ void RungFits::average(int rung, Rung& found) {
     });
 }
 
-/// Inverse variance of what a quadric tells of its shape operator, relative to that over a disc filled evenly, at most
-/// 1. Beside borders it is a tenth, and the others tell more. On meshes windows are as long as the cells, which would
-/// weigh one side of a window more for the layout alone; and bias, which even weights cancel, counts more there.
+/// Inverse standard error of what a quadric tells of its shape operator, relative to that over a disc filled evenly, at
+/// most 1. Beside borders it is a third, and the others tell more; by its square noise would be least, but what the
+/// others tell is of a place farther in. On meshes windows are as long as the cells, which would weigh one side of a
+/// window more for the layout alone; and bias, which even weights cancel, counts more there.
 double RungFits::precision(std::size_t i, int rung, const Rung& found) const {
     if (elements_.connected) return 1;
     const double size2 = double(found.size[i]) * double(found.size[i]);
-    return std::min(1.0, even_trace / (rung_neighbors(rung) * double(found.trace[0][i]) * size2 * size2));
+    return std::sqrt(std::min(1.0, even_trace / (rung_neighbors(rung) * double(found.trace[0][i]) * size2 * size2)));
 }
 
 /// Over the samples within half the neighbours' reach and within all of it.

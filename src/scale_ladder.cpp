@@ -319,6 +319,7 @@ Level lowest_level(const Elements& elements, double scale, const ElementGraph& g
     level.foot = level.position;
     level.normal.assign(elements.count, Vec3{nan, nan, nan});
     level.graph = graph;
+    level.area.assign(elements.count, 1);
     return level;
 }
 

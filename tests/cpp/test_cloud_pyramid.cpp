@@ -37,6 +37,7 @@ Level sphere_level(std::size_t count) {
         level.normal.push_back(p);
     }
     level.foot = level.position;
+    level.area.assign(count, 1);
     level.graph.index.assign(count * ElementGraph::degree, -1);
     for (std::size_t i = 0; i < count; ++i) {
         std::vector<std::pair<double, std::int32_t>> others;
@@ -78,6 +79,28 @@ TEST(Pyramid, MixesByWeightAndTellsOfTheBest) {
         EXPECT_NEAR(measured.tensor[0].xx * measured.normal[0].z, curvature / weights, 1e-12);
     }
     EXPECT_NEAR(measured.weight[0], weights, 1e-12);
+}
+
+TEST(Pyramid, AreasCountTheElementsThatAreNearest) {
+    Level lowest = sphere_level(600);
+    Level middle = coarsened(lowest, {1, {}});
+    const Level top = coarsened(middle, {1, {}});
+    const auto nearest = [](const Level& level, Vec3 p) {
+        std::size_t best = 0;
+        for (std::size_t g = 1; g < level.count(); ++g)
+            if (squared(level.foot_of(g) - p) < squared(level.foot_of(best) - p)) best = g;
+        return best;
+    };
+    std::vector<float> of_middle(middle.count(), 0), of_top(top.count(), 0);
+    for (std::size_t i = 0; i < lowest.count(); ++i) {
+        const std::size_t g = nearest(middle, lowest.foot_of(i));
+        of_middle[g] += 1;
+        of_top[nearest(top, middle.foot_of(g))] += 1;
+    }
+    EXPECT_EQ(middle.area, of_middle);
+    EXPECT_EQ(top.area, of_top);
+    EXPECT_GT(*std::max_element(top.area.begin(), top.area.end()),
+              1.5F * *std::min_element(top.area.begin(), top.area.end()));
 }
 
 TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
