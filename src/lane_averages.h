@@ -21,7 +21,7 @@ constexpr double one_sheet = 0.3;
 struct alignas(32) SurfaceSample {
     double normal[3] = {nan, nan, nan}, foot[3] = {nan, nan, nan};
     double tensor[6] = {nan, nan, nan, nan, nan, nan};  ///< xx xy xz yy yz zz, of the tangent plane
-    double weight = 0;                                  ///< area that it stands for, times how sure it is
+    double weight = 0;                                  ///< area that it stands for, relative to others
 
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };

@@ -26,10 +26,6 @@ LaneAverageKernel* best_lane_averages() {
 /// falls little at borders).
 constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.467};
 
-/// Variance of a quadric's shape operator over a disc filled evenly, relative to that of heights, times n h⁴: 250 to
-/// 270 of hundreds of neighbours, 2500 to 3200 over half a disc.
-constexpr double even_trace = 270;
-
 }  // namespace
 
 Rung RungFits::step(int rung) {
@@ -148,7 +144,7 @@ void RungFits::average(int rung, Rung& found) {
             samples[i] = {{normal.x, normal.y, normal.z},
                           {level_.foot[3 * i], level_.foot[3 * i + 1], level_.foot[3 * i + 2]},
                           {t.xx, t.xy, t.xz, t.yy, t.yz, t.zz},
-                          precision(i, rung, found) * double(level_.area[i])};
+                          double(level_.area[i])};
         }
     });
     for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
@@ -160,16 +156,6 @@ void RungFits::average(int rung, Rung& found) {
                 average_elements(who, std::exchange(filled, 0), static_cast<int>(count), samples, found);
         }
     });
-}
-
-/// Inverse standard error of what a quadric tells of its shape operator, relative to that over a disc filled evenly, at
-/// most 1. Beside borders it is a third, and the others tell more; by its square noise would be least, but what the
-/// others tell is of a place farther in. On meshes windows are as long as the cells, which would weigh one side of a
-/// window more for the layout alone; and bias, which even weights cancel, counts more there.
-double RungFits::precision(std::size_t i, int rung, const Rung& found) const {
-    if (elements_.connected) return 1;
-    const double size2 = double(found.size[i]) * double(found.size[i]);
-    return std::sqrt(std::min(1.0, even_trace / (rung_neighbors(rung) * double(found.trace[0][i]) * size2 * size2)));
 }
 
 /// Over the samples within half the neighbours' reach and within all of it.

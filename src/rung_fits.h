@@ -89,7 +89,6 @@ class RungFits {
     void average(int rung, Rung& found);
     void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
                           const std::vector<SurfaceSample>& samples, Rung& found);
-    double precision(std::size_t i, int rung, const Rung& found) const;
     void keep_sphere(std::size_t i, double own, double unit, SphereSums sums, Rung& found);
     void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
               Rung& found);

@@ -53,7 +53,7 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 2},
 
 /// Level sets of spheres are exact on spheres and nearly so along circles; their bias sets in late, and then more than
 /// doubles from rung to rung. Told is what slower growth would mean.
-constexpr double sphere_growth_told = 0.6;
+constexpr double sphere_growth_told = 0.4;
 
 /// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².
