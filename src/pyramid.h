@@ -21,10 +21,9 @@ struct Level {
     ElementGraph graph;
     std::vector<std::int32_t> parent;  ///< of each element, the nearest of the next level; empty at the top
     std::vector<std::int32_t>
-        representative;  ///< the element of the level below at whose foot each one is; empty below
-    std::vector<float>
-        area;            ///< of the lowest level's elements, how many each is the nearest one to, as told by parents
-    double members = 1;  ///< elements of the lowest level that one stands for
+        representative;       ///< the element of the level below at whose foot each one is; empty below
+    std::vector<float> area;  ///< how many elements of the lowest level have each one above them, parent by parent
+    double members = 1;       ///< elements of the lowest level that one stands for
 
     std::size_t count() const { return position.size() / 3; }
     Vec3 at(std::size_t i) const { return load(position.data() + 3 * i); }

@@ -40,20 +40,20 @@ struct Traits {
     /// The same at borders, where the bias of quadrics and means grows with h, as odd orders do not cancel over half
     /// discs: at most the growth of h less 1, 0.2, and a little more where even ones are as large.
     double bias_at_border;
-    double
-        fitting;  ///< residuals of its quadrics or quartics, relative to the noise, up to which a surface was met alone
+    /// Growth of the bias that is told of, relative to the growth that a choice reckons with. Level sets of spheres are
+    /// exact on spheres and nearly so along circles; their bias sets in late, and then more than doubles from rung to
+    /// rung. Told is what slower growth would mean.
+    double told;
+    /// Residuals, relative to the noise, of its quadrics or quartics up to which a surface was met alone.
+    double fitting;
 };
-constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 2},
-                                                  {0.24, 0.31, 0.38, 0.23, 2},
-                                                  {0.08, 0.35, 0.36, 0.22, 2},
-                                                  {0.20, 0.30, 0.36, 0.36, 2},
-                                                  {0.09, 0.28, 0.32, 0.32, 2},
-                                                  {1, 0.50, 0.78, 0.78, 2},
-                                                  {0.62, 0.33, 1.4, 1.4, 2.5}}};
-
-/// Level sets of spheres are exact on spheres and nearly so along circles; their bias sets in late, and then more than
-/// doubles from rung to rung. Told is what slower growth would mean.
-constexpr double sphere_growth_told = 0.4;
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 1, 2},
+                                                  {0.24, 0.31, 0.38, 0.23, 1, 2},
+                                                  {0.08, 0.35, 0.36, 0.22, 1, 2},
+                                                  {0.20, 0.30, 0.36, 0.36, 1, 2},
+                                                  {0.09, 0.28, 0.32, 0.32, 1, 2},
+                                                  {1, 0.50, 0.78, 0.78, 1, 2},
+                                                  {0.62, 0.33, 1.4, 1.4, 0.4 / 1.4, 2.5}}};
 
 /// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².
@@ -253,8 +253,8 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         };
         const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
         // What is told of the error is only what is not usual of noise.
-        const float error = squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}),
-                                          family == static_cast<int>(Family::sphere) ? sphere_growth_told : growth);
+        const float error =
+            squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}), known.told * growth);
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything. The value is not more than the
         // mean's, which noise raises least: that of slopes near a border may be all noise.
