@@ -47,10 +47,12 @@ inline SecondOrder inverse(const SecondOrder& a) {
     return result;
 }
 
-/// The level set through the place: its unit normal and its shape operator.
+/// The level set through the place: its unit normal and its shape operator; and how far along the normal the surface
+/// is, to the first order.
 struct LevelSet {
     Vec3 normal;
     Symmetric3 tensor;
+    double height;
 };
 
 /// Sums over the samples about a place, at differences p from it in units of the window, with normals n. A sample's
@@ -77,6 +79,9 @@ struct SphereSums {
                 {8 * of[5] - shift, 8 * of[6], 8 * of[7], 8 * of[8] - shift, 8 * of[9], 8 * of[10] - shift}};
     }
 
+    /// Mean place of the samples.
+    Vec3 middle() const { return 1 / sum[0][0] * Vec3{sum[1][0], sum[2][0], sum[3][0]}; }
+
     /// Not finite where the samples are too few.
     LevelSet level_set() const {
         const SecondOrder each = inverse((*this)[0]);
@@ -98,7 +103,7 @@ struct SphereSums {
             add_product(hessian, 2 * quadratic.value, axes[c], axes[c]);
         }
         const double size = length(gradient);
-        LevelSet found = {1 / size * gradient, {}};
+        LevelSet found = {1 / size * gradient, {}, -constant.value / size};
         // P H P / |∇|, P the projection along the normal.
         const Vec3 along = gaussmap::product(hessian, found.normal);
         add_product(hessian, -2, found.normal, along);

@@ -1,12 +1,11 @@
 // Averages of what quadrics found over the surface about four elements, a lane each: of their shape operators, and of
-// the slopes of their normals over their feet; and sums for algebraic spheres. Every lane does the same operations in
-// the same order whatever the others hold, so every instruction set gives the same bits.
+// the slopes of their normals over their feet. Every lane does the same operations in the same order whatever the
+// others hold, so every instruction set gives the same bits.
 #pragma once
 
 #include <cstdint>
 #include <limits>
 
-#include "algebraic_sphere.h"
 #include "frame.h"
 #include "lane_fits.h"
 #include "slope_fit.h"
@@ -27,11 +26,9 @@ struct alignas(32) SurfaceSample {
 };
 
 /// Four elements, and the samples about them.
-struct alignas(32) LaneCentres {
+struct alignas(32) LaneFrames {
     LaneValues axis[3][3] = {};  ///< of the frame about the normal: u, v, n
     LaneValues foot[3] = {};
-    LaneValues unit = {};                         ///< what places in the tangent plane are multiplied by
-    LaneValues reach[2] = {};                     ///< of the windows, squared; the first is the narrower
     const std::int32_t* samples[fit_lanes] = {};  ///< −1 where there is none, or where it is not to count
     int count = 0;                                ///< of the samples of each lane
 
@@ -41,6 +38,11 @@ struct alignas(32) LaneCentres {
             axis[a][0][lane] = axes[a].x, axis[a][1][lane] = axes[a].y, axis[a][2][lane] = axes[a].z;
         foot[0][lane] = at.x, foot[1][lane] = at.y, foot[2][lane] = at.z;
     }
+};
+
+struct alignas(32) LaneCentres : LaneFrames {
+    LaneValues unit = {};      ///< what places in the tangent plane are multiplied by
+    LaneValues reach[2] = {};  ///< of the windows, squared; the first is the narrower
 };
 
 /// Sums over the samples in a window, with their weights times 1 − (d/h)².
@@ -62,22 +64,8 @@ struct alignas(32) LaneAverages {
     }
 };
 
-/// Sums for the algebraic spheres over the wider window; places and normals in the frame, the former in units of it.
-struct alignas(32) LaneSpheres {
-    LaneValues sum[SphereSums::terms][SphereSums::parts];
-
-    SphereSums sums(int lane) const {
-        SphereSums of;
-        for (int t = 0; t < SphereSums::terms; ++t)
-            for (int i = 0; i < SphereSums::parts; ++i) of.sum[t][i] = sum[t][i][lane];
-        return of;
-    }
-};
-
 /// Of both windows. Samples that look elsewhere, or are not within the wider window, do not count.
-/// \param spheres  null where they are not wanted; else places in units of the wider window are asked for.
-typedef void LaneAverageKernel(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
-                               LaneSpheres* spheres);
+typedef void LaneAverageKernel(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2]);
 extern LaneAverageKernel lane_averages_baseline;
 extern LaneAverageKernel lane_averages_avx2;
 

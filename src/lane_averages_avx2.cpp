@@ -2,9 +2,8 @@
 
 namespace gaussmap {
 
-void lane_averages_avx2(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
-                        LaneSpheres* spheres) {
-    average(samples, centres, windows, spheres);
+void lane_averages_avx2(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2]) {
+    average(samples, centres, windows);
 }
 
 }  // namespace gaussmap

@@ -4,29 +4,10 @@
 #pragma once
 
 #include "lane_averages.h"
-#include "registers.h"
+#include "lane_vectors.h"
 
 namespace gaussmap {
 namespace {
-
-struct Vector {
-    Real x, y, z;
-};
-GAUSSMAP_INLINE Vector operator+(Vector a, Vector b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-GAUSSMAP_INLINE Vector operator-(Vector a, Vector b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-GAUSSMAP_INLINE Vector operator*(Real s, Vector a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-GAUSSMAP_INLINE Real dot(Vector a, Vector b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-GAUSSMAP_INLINE Vector load(const LaneValues (&a)[3], int lane) {
-    return {load(&a[0][lane]), load(&a[1][lane]), load(&a[2][lane])};
-}
 
 /// Some lanes of the centres.
 struct Centres {
@@ -46,38 +27,27 @@ struct Centres {
 
 /// A sample as it is seen from the centre.
 struct Sight {
-    Real u, v, n;  ///< its place in the frame
-    Real normal_u, normal_v, normal_n;
+    Real u, v;  ///< its place in the frame
+    Real normal_u, normal_v;
     Real uu, uv, vv;  ///< its shape operator, turned
     Real weight[2];
-    Real known;  ///< its own weight
 };
 
 GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Centres& centre) {
-    const auto gather = [&](auto&& value) {
-        Real values;
-        for (int l = 0; l < lanes; ++l) values[l] = value(*samples[l]);
-        return values;
-    };
-    const auto vector = [&](const double(SurfaceSample::*of)[3]) {
-        return Vector{gather([&](const SurfaceSample& s) { return (s.*of)[0]; }),
-                      gather([&](const SurfaceSample& s) { return (s.*of)[1]; }),
-                      gather([&](const SurfaceSample& s) { return (s.*of)[2]; })};
-    };
-    const Vector its_normal = vector(&SurfaceSample::normal), d = vector(&SurfaceSample::foot) - centre.foot;
+    const Vector its_normal = gather_vector(samples, &SurfaceSample::normal),
+                 d = gather_vector(samples, &SurfaceSample::foot) - centre.foot;
     const Real along = dot(its_normal, centre.n), away = dot(d, d);
     const Real sign = select(along < 0, all(-1), all(1)), cosine = sign * along;
     const Vector normal = sign * its_normal;
     Sight sight;
     sight.u = centre.unit * dot(d, centre.u), sight.v = centre.unit * dot(d, centre.v);
-    sight.n = centre.unit * dot(d, centre.n);
-    sight.normal_u = dot(normal, centre.u), sight.normal_v = dot(normal, centre.v), sight.normal_n = cosine;
+    sight.normal_u = dot(normal, centre.u), sight.normal_v = dot(normal, centre.v);
     // Tangents turned to the sample's plane: t goes to t − w (w·t) / (1 + cosine), w the sum of the normals.
     const Vector w = normal + centre.n;
     const Real c = 1 / (1 + cosine);
     const Vector a = centre.u - (sight.normal_u * c) * w, b = centre.v - (sight.normal_v * c) * w;
     Real t[6];
-    for (int i = 0; i < 6; ++i) t[i] = gather([&](const SurfaceSample& s) { return s.tensor[i]; });
+    for (int i = 0; i < 6; ++i) t[i] = gather(samples, [&](const SurfaceSample& s) { return s.tensor[i]; });
     const auto product = [&](Vector x) {
         return Vector{t[0] * x.x + t[1] * x.y + t[2] * x.z, t[1] * x.x + t[3] * x.y + t[4] * x.z,
                       t[2] * x.x + t[4] * x.y + t[5] * x.z};
@@ -86,14 +56,13 @@ GAUSSMAP_INLINE Sight see(const SurfaceSample* const (&samples)[lanes], const Ce
     sight.uu = sign * dot(a, ta), sight.uv = sign * dot(b, ta), sight.vv = sign * dot(b, tb);
     // Other sheets and far sides look elsewhere.
     const Mask seen = (cosine >= one_sheet) & (away < centre.reach);
-    sight.known = select(seen, gather([&](const SurfaceSample& s) { return s.weight; }), Real{});
+    const Real known = select(seen, gather(samples, [](const SurfaceSample& s) { return s.weight; }), Real{});
     for (int m = 0; m < 2; ++m) {
         const Real weight = 1 - away * centre.inverse_reach[m];
-        sight.weight[m] = select(seen & (weight > 0), sight.known * weight, Real{});
+        sight.weight[m] = select(seen & (weight > 0), known * weight, Real{});
     }
     // What is not there is NaN, and would stay so with any weight.
-    for (Real* value : {&sight.u, &sight.v, &sight.n, &sight.normal_u, &sight.normal_v, &sight.normal_n, &sight.uu,
-                        &sight.uv, &sight.vv})
+    for (Real* value : {&sight.u, &sight.v, &sight.normal_u, &sight.normal_v, &sight.uu, &sight.uv, &sight.vv})
         *value = select(seen, *value, Real{});
     return sight;
 }
@@ -134,30 +103,6 @@ GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Sums& sums) {
     }
 }
 
-/// What a sample's place and normal come to in the sums for spheres.
-struct Term {
-    Real of[SphereSums::terms], part[SphereSums::parts];
-};
-
-GAUSSMAP_INLINE Term term(const Sight& a) {
-    const Real pp = a.u * a.u + a.v * a.v + a.n * a.n, pn = a.u * a.normal_u + a.v * a.normal_v + a.n * a.normal_n;
-    const Real s = 1 - pp, k = a.known, x = k * a.u, y = k * a.v, ks = k * s;
-    return {{all(1), a.u, a.v, a.n, a.normal_u, a.normal_v, a.normal_n, pp, pn},
-            {ks * s, ks * a.u, ks * a.v, ks * a.n, ks, x * a.u, x * a.v, x * a.n, y * a.v, y * a.n, k * a.n * a.n}};
-}
-
-GAUSSMAP_INLINE void add(const Sight& a, const Sight& b, Real (&sums)[SphereSums::terms][SphereSums::parts]) {
-    const Term of_a = term(a), of_b = term(b);
-    for (int t = 0; t < SphereSums::terms; ++t)
-#pragma GCC unroll 11
-        for (int i = 0; i < SphereSums::parts; ++i) sums[t][i] += of_a.of[t] * of_a.part[i] + of_b.of[t] * of_b.part[i];
-}
-
-void keep(const Real (&sums)[SphereSums::terms][SphereSums::parts], int lane, LaneSpheres& to) {
-    for (int t = 0; t < SphereSums::terms; ++t)
-        for (int i = 0; i < SphereSums::parts; ++i) store(&to.sum[t][i][lane], sums[t][i]);
-}
-
 void keep(const Sums& sums, int lane, LaneAverages& to) {
     store(&to.weight[lane], sums.weight);
     store(&to.count[lane], sums.count);
@@ -169,30 +114,23 @@ void keep(const Sums& sums, int lane, LaneAverages& to) {
     store(&to.square[lane], sums.square);
 }
 
-void average(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2],
-             LaneSpheres* spheres) {
+void average(const SurfaceSample* samples, const LaneCentres& centres, LaneAverages (&windows)[2]) {
     static const SurfaceSample nothing;
     for (int lane = 0; lane < fit_lanes; lane += lanes) {
         const Centres centre(centres, lane);
         const auto sight = [&](int s) {
             const SurfaceSample* at[lanes];
-            for (int l = 0; l < lanes; ++l) {
-                const std::int32_t* const from = centres.samples[lane + l];
-                at[l] = s < centres.count && from != nullptr && from[s] >= 0 ? samples + from[s] : &nothing;
-            }
+            pick(samples, nothing, centres, lane, s, at);
             return see(at, centre);
         };
         Sums narrow = {}, wide = {};
-        Real sphere[SphereSums::terms][SphereSums::parts] = {};
         for (int s = 0; s < centres.count; s += 2) {
             const Sight a = sight(s), b = sight(s + 1);
             add<1>(a, b, wide);
-            if (spheres != nullptr) add(a, b, sphere);
             if (bits_of((a.weight[0] > 0) | (b.weight[0] > 0)) != 0) add<0>(a, b, narrow);
         }
         keep(narrow, lane, windows[0]);
         keep(wide, lane, windows[1]);
-        if (spheres != nullptr) keep(sphere, lane, *spheres);
     }
 }
 

@@ -20,6 +20,22 @@ constexpr int few_rings = 3, many_rings = 6;
 LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
 }
+LaneSphereKernel* best_lane_spheres() {
+    return GAUSSMAP_FASTEST(lane_spheres);
+}
+
+/// Call body(who, filled) with the elements that are known, a lane each.
+template <class Known, class Body>
+void for_lanes(std::size_t count, Known&& known, const Execution& run, Body&& body) {
+    for_blocks(count, grain, run, [&](std::size_t, std::size_t i, std::size_t last) {
+        std::size_t who[fit_lanes];
+        int filled = 0;
+        for (; i < last; ++i) {
+            if (known(i)) who[filled++] = i;
+            if (filled == fit_lanes || (filled > 0 && i + 1 == last)) body(who, std::exchange(filled, 0));
+        }
+    });
+}
 
 /// Weighted sums in place of counts: the sandwich covariance of a fit with smoothing weights relative to that of
 /// data with variances 1 / weight, and what an unknown takes from the sum of the weights (both for discs; the ratio
@@ -147,15 +163,10 @@ void RungFits::average(int rung, Rung& found) {
                           double(level_.area[i])};
         }
     });
-    for_blocks(level_.count(), grain, run_, [&](std::size_t, std::size_t i, std::size_t last) {
-        std::size_t who[fit_lanes];
-        int filled = 0;
-        for (; i < last; ++i) {
-            if (known(i)) who[filled++] = i;
-            if (filled == fit_lanes || (filled > 0 && i + 1 == last))
-                average_elements(who, std::exchange(filled, 0), static_cast<int>(count), samples, found);
-        }
+    for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
+        average_elements(who, filled, static_cast<int>(count), samples, found);
     });
+    if (families_tried(elements_) > static_cast<int>(Family::sphere)) keep_spheres(static_cast<int>(count), found);
 }
 
 /// Over the samples within half the neighbours' reach and within all of it.
@@ -172,26 +183,68 @@ void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled,
         centres.samples[l] = samples_.data() + i * most_samples_;
     }
     LaneAverages windows[2];
-    LaneSpheres spheres;
-    const bool with_spheres = families_tried(elements_) > static_cast<int>(Family::sphere);
-    best_lane_averages()(samples.data(), centres, windows, with_spheres ? &spheres : nullptr);
-    for (int l = 0; l < filled; ++l) {
-        const double own = samples[who[l]].weight;
-        keep(who[l], l, own, windows, centres, found);
-        if (with_spheres) keep_sphere(who[l], own, centres.unit[l], spheres.sums(l), found);
-    }
+    best_lane_averages()(samples.data(), centres, windows);
+    for (int l = 0; l < filled; ++l) keep(who[l], l, samples[who[l]].weight, windows, centres, found);
 }
 
-/// The level set through the foot, seen along the quadric's normal.
-void RungFits::keep_sphere(std::size_t i, double own, double unit, SphereSums sums, Rung& found) {
+/// The level sets of spheres through the places of a surface, over the windows of the rung.
+/// \param keep  called with an element, the frame about its normal, the mean place of the samples, in units of the
+///              window, and the level set, in the frame and the same units.
+template <class Keep>
+void RungFits::find_level_sets(int count, const Surface& surface, const Rung& found, Keep&& keep) const {
     constexpr Vec3 up = {0, 0, 1};
-    sums.add({0, 0, 0}, up, own);
-    const LevelSet level_set = sums.level_set();
-    if (!(level_set.normal.z > one_sheet)) return;
-    const Symmetric3 seen = carried(level_set.tensor, level_set.normal, up);
-    const Symmetric3 tensor = in_plane(frame_about(found.normal[i]), unit * seen.xx, unit * seen.xy, unit * seen.yy);
-    found.tensor[static_cast<int>(Family::sphere)][i] = tensor;
-    found.density[static_cast<int>(Family::sphere)][i] = static_cast<float>(squared_norm(tensor));
+    const auto known = [&](std::size_t i) { return surface[i].weight > 0; };
+    for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
+        LaneBalls balls;
+        balls.count = count;
+        Frame frames[fit_lanes];
+        for (int l = 0; l < filled; ++l) {
+            const SphereSample& own = surface[who[l]];
+            frames[l] = frame_about(load(own.normal));
+            balls.set(l, frames[l], load(own.foot));
+            balls.radius[l] = double(found.size[who[l]]);
+            balls.samples[l] = samples_.data() + who[l] * most_samples_;
+        }
+        LaneSpheres spheres;
+        best_lane_spheres()(surface.data(), balls, spheres);
+        for (int l = 0; l < filled; ++l) {
+            SphereSums sums = spheres.sums(l);
+            sums.add({0, 0, 0}, up, surface[who[l]].weight);
+            const LevelSet level_set = sums.level_set();
+            if (level_set.normal.z > one_sheet) keep(who[l], frames[l], sums.middle(), level_set);
+        }
+    });
+}
+
+/// Of the spheres of the surface that the spheres of the quadrics' surface make: of least noise for their bias. Beside
+/// borders, where the first are one-sided, the quadrics' surface stays.
+void RungFits::keep_spheres(int count, Rung& found) const {
+    constexpr double one_sided = 0.2;  // 0.29 at the border of a half disc
+    constexpr double far = 0.5;        // for a surface through the window
+    constexpr auto family = static_cast<int>(Family::sphere);
+    Surface quadrics(level_.count());
+    for (std::size_t i = 0; i < level_.count(); ++i) {
+        if (!active_[i] || !std::isfinite(found.size[i])) continue;
+        store(quadrics[i].normal, found.normal[i]);
+        store(quadrics[i].foot, level_.foot_of(i));
+        quadrics[i].weight = double(level_.area[i]);
+    }
+    Surface spheres = quadrics;
+    find_level_sets(count, quadrics, found,
+                    [&](std::size_t i, const Frame& frame, Vec3 middle, const LevelSet& level_set) {
+                        if (std::hypot(middle.x, middle.y) > one_sided || std::abs(level_set.height) > far) return;
+                        const Vec3 n = level_set.normal, normal = n.x * frame.u + n.y * frame.v + n.z * frame.n;
+                        const double height = double(found.size[i]) * level_set.height;
+                        store(spheres[i].normal, normal);
+                        store(spheres[i].foot, load(quadrics[i].foot) + height * normal);
+                    });
+    find_level_sets(count, spheres, found, [&](std::size_t i, const Frame& frame, Vec3, const LevelSet& level_set) {
+        const Symmetric3 seen = carried(level_set.tensor, level_set.normal, {0, 0, 1});
+        const double unit = 1 / double(found.size[i]);
+        const Symmetric3 tensor = in_plane(frame, unit * seen.xx, unit * seen.xy, unit * seen.yy);
+        found.tensor[family][i] = carried(tensor, frame.n, found.normal[i]);
+        found.density[family][i] = static_cast<float>(squared_norm(tensor));
+    });
 }
 
 /// The mean of the quadrics' shape operators, the element's own among them, and the slopes of their normals over their

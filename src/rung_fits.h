@@ -11,6 +11,7 @@
 #include "fitted_curvature.h"
 #include "gaussmap/neighbors.h"
 #include "lane_averages.h"
+#include "lane_spheres.h"
 #include "pyramid.h"
 #include "scale_ladder.h"
 #include "window_fits.h"
@@ -58,6 +59,9 @@ inline Rung at(const Rung& rung, const std::vector<std::int32_t>& index) {
     return picked;
 }
 
+/// Where a surface is under each element of a level.
+using Surface = std::vector<SphereSample>;
+
 /// The fits of a level's elements, rung after rung; each moves the feet of the elements to the surface that it finds.
 class RungFits {
   public:
@@ -89,7 +93,9 @@ class RungFits {
     void average(int rung, Rung& found);
     void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
                           const std::vector<SurfaceSample>& samples, Rung& found);
-    void keep_sphere(std::size_t i, double own, double unit, SphereSums sums, Rung& found);
+    template <class Keep>
+    void find_level_sets(int count, const Surface& surface, const Rung& found, Keep&& keep) const;
+    void keep_spheres(int count, Rung& found) const;
     void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
               Rung& found);
 

@@ -53,7 +53,7 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 1, 2},
                                                   {0.20, 0.30, 0.36, 0.36, 1, 2},
                                                   {0.09, 0.28, 0.32, 0.32, 1, 2},
                                                   {1, 0.50, 0.78, 0.78, 1, 2},
-                                                  {0.62, 0.33, 1.4, 1.4, 0.4 / 1.4, 2.5}}};
+                                                  {0.45, 0.33, 1, 1, 0.28, 2.5}}};
 
 /// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².

@@ -157,9 +157,7 @@ TEST(LaneAverages, AreThoseOfPlainSums) {
         LaneCentres centres;
         for (const int lane : {0, 2, 3}) centre(centres, lane, row, normal, at);  // and none in one lane
         LaneAverages windows[2];
-        LaneSpheres spheres;
-        kernel(samples.data(), centres, windows, &spheres);
-        SphereSums sums;
+        kernel(samples.data(), centres, windows);
         int counted[2];
         for (int m = 0; m < 2; ++m) {
             Symmetric3 sum;
@@ -175,11 +173,6 @@ TEST(LaneAverages, AreThoseOfPlainSums) {
                 add(sum, side * weight, carried(tensor_of(sample), side * its, normal));
                 slopes.add(dot(d, frame.u) / whole, dot(d, frame.v) / whole, dot(side * its, frame.u),
                            dot(side * its, frame.v), weight);
-                if (m == 1) {
-                    const Vec3 n = side * its;
-                    sums.add(1 / whole * Vec3{dot(d, frame.u), dot(d, frame.v), dot(d, frame.n)},
-                             {dot(n, frame.u), dot(n, frame.v), dot(n, frame.n)}, sample.weight);
-                }
                 weights += weight;
                 normals[0] += weight * side * dot(its, frame.u), normals[1] += weight * side * dot(its, frame.v);
             }
@@ -206,11 +199,6 @@ TEST(LaneAverages, AreThoseOfPlainSums) {
             EXPECT_EQ(windows[m].weight[1], 0);
             EXPECT_EQ(windows[m].count[1], 0);
         }
-        for (int t = 0; t < SphereSums::terms; ++t)
-            for (int i = 0; i < SphereSums::parts; ++i) {
-                for (const int lane : {0, 2, 3}) EXPECT_NEAR(spheres.sums(lane).sum[t][i], sums.sum[t][i], 1e-12);
-                EXPECT_EQ(spheres.sum[t][i][1], 0);
-            }
         EXPECT_GE(counted[0], 10);
         EXPECT_GT(counted[1], counted[0]);
         EXPECT_LT(counted[1], count - 5);
@@ -228,19 +216,12 @@ TEST(LaneAverages, StandAloneWithTheSameBitsFromEveryInstructionSet) {
         centre(mixed, l, l == 1 ? nothing : row, l == 2 ? Vec3{NAN, NAN, NAN} : Vec3{0, 0, 1}, at);
     }
     LaneAverages first[2];
-    LaneSpheres first_spheres;
-    lane_averages_baseline(samples.data(), alike, first, &first_spheres);
+    lane_averages_baseline(samples.data(), alike, first);
     for (LaneAverageKernel* kernel : kernels()) {
-        LaneAverages again[2], among[2], alone[2];
-        LaneSpheres spheres, among_spheres;
-        kernel(samples.data(), alike, again, &spheres);
-        kernel(samples.data(), mixed, among, &among_spheres);
-        kernel(samples.data(), alike, alone, nullptr);
+        LaneAverages again[2], among[2];
+        kernel(samples.data(), alike, again);
+        kernel(samples.data(), mixed, among);
         EXPECT_EQ(std::memcmp(first, again, sizeof first), 0);
-        EXPECT_EQ(std::memcmp(first, alone, sizeof first), 0);
-        EXPECT_EQ(std::memcmp(&first_spheres, &spheres, sizeof spheres), 0);
-        for (int t = 0; t < SphereSums::terms; ++t)
-            for (const int l : {0, 3}) EXPECT_EQ(among_spheres.sum[t][5][l], spheres.sum[t][5][l]);
         for (int m = 0; m < 2; ++m)
             for (const int l : {0, 3}) {
                 EXPECT_EQ(among[m].tensor[1][l], first[m].tensor[1][l]);

@@ -1,9 +1,14 @@
 // Algebraic spheres: exact on spheres however irregular the samples, nearly so on cylinders far wider than their
-// radius, where the slopes of normals are not; and against differences of the potential, made from the definition.
+// radius, where the slopes of normals are not; and against differences of the potential, made from the definition. Four
+// places side by side: against sums made sample by sample, and the same bits whatever goes along and from every
+// instruction set.
 #include <cmath>
+#include <cstring>
+#include <numbers>
 #include <vector>
 
 #include "../../src/algebraic_sphere.h"
+#include "../../src/lane_spheres.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -60,7 +65,31 @@ TEST(AlgebraicSpheres, AreExactOnSpheres) {
         EXPECT_NEAR(found.tensor.yy, 1 / r, 1e-9 / r) << r;
         EXPECT_NEAR(found.tensor.xy, 0, 1e-9 / r) << r;
         EXPECT_NEAR(squared_norm(found.tensor), 2 / (r * r), 1e-8 / (r * r)) << r;
+        EXPECT_NEAR(found.height, 0, 1e-12) << r;
     }
+}
+
+TEST(AlgebraicSpheres, TellHowFarTheSurfaceIs) {
+    // From a place above the pole of a sphere, along the normal: the potential of a sphere grows as |y|² does.
+    constexpr double r = 2, above = 0.1;
+    Random random(3);
+    SphereSums sums;
+    for (const Sample& s : on_sphere(random, r, 40))
+        if (const Vec3 p = s.p - Vec3{0, 0, above}; squared(p) < 1) sums.add(p, s.n, s.weight);
+    const LevelSet found = sums.level_set();
+    EXPECT_NEAR(found.normal.z, 1, 1e-12);
+    EXPECT_NEAR(found.height, -((r + above) * (r + above) - r * r) / (2 * (r + above)), 1e-12);
+}
+
+TEST(AlgebraicSpheres, TellWhereTheSamplesAre) {
+    // Of an even half disc it is at (4 / 3π) · (24 / 35) = 0.291 from the middle of the disc.
+    SphereSums sums;
+    for (int i = 0; i < 100; ++i)
+        for (int j = -99; j < 100; ++j)
+            if (const Vec3 p = {0.01 * i + 0.005, 0.01 * j, 0}; squared(p) < 1) sums.add(p, {0, 0, 1}, 0.3);
+    EXPECT_NEAR(sums.middle().x, 4 / (3 * std::numbers::pi) * 24 / 35, 1e-3);
+    EXPECT_NEAR(sums.middle().y, 0, 1e-12);
+    EXPECT_EQ(sums.middle().z, 0);
 }
 
 TEST(AlgebraicSpheres, FollowCylindersFarRound) {
@@ -99,8 +128,11 @@ TEST(AlgebraicSpheres, AreTheDerivativesOfThePotential) {
                             (4 * step * step);
     }
     const Vec3 g = {gradient[0], gradient[1], gradient[2]};
-    const LevelSet found = sums_of(samples).level_set();
+    const SphereSums sums = sums_of(samples);
+    const LevelSet found = sums.level_set();
     EXPECT_NEAR(length(found.normal - unit(g)), 0, 1e-5);
+    // A step of Newton's towards the surface.
+    EXPECT_NEAR(found.height, -f({0, 0, 0}) / length(g), 1e-5);
     const Frame frame = frame_about(unit(g));
     const auto curvature = [&](Vec3 a, Vec3 b) {
         const double as[3] = {a.x, a.y, a.z}, bs[3] = {b.x, b.y, b.z};
@@ -120,4 +152,106 @@ TEST(AlgebraicSpheres, TooFewSamplesTellNothing) {
     one.add({0, 0, 0}, {0, 0, 1}, 1);
     EXPECT_FALSE(std::isfinite(one.level_set().normal.z));
     EXPECT_FALSE(std::isfinite(SphereSums().level_set().normal.z));
+}
+
+namespace {
+
+constexpr int count = 41, across = 6;  // odd: two go at a time
+constexpr double radius = 0.6;
+
+/// About the pole of a unit sphere, with noise, normals of either side, and some that must not count.
+std::vector<SphereSample> samples_about_the_pole(Random& random) {
+    std::vector<SphereSample> samples(count);
+    for (SphereSample& sample : samples) {
+        const double u = 0.8 * (random.uniform() - 0.5), v = 0.8 * (random.uniform() - 0.5);
+        const Vec3 foot = {u, v, std::sqrt(1 - u * u - v * v) + 0.01 * random.normal()};
+        const Vec3 off = {0.05 * random.normal(), 0.05 * random.normal(), 0};
+        const Vec3 normal = (random.below(2) == 0 ? 1.0 : -1.0) * unit(foot + off);
+        sample = {{normal.x, normal.y, normal.z}, {foot.x, foot.y, foot.z}, 0.2 + random.uniform()};
+    }
+    samples[3] = {};                                                            // nothing is known there
+    samples[4].normal[0] = 1, samples[4].normal[1] = samples[4].normal[2] = 0;  // upright
+    for (double& x : samples[5].foot) x += 1;                                   // far away
+    samples[across] = {{0, 0, -1}, {0.1, 0, 0.6}, 1};
+    samples[10] = {{0, 0, 1}, {0.02, 0.03, 1.04}, 1};  // overhead, but near by
+    return samples;
+}
+
+std::vector<std::int32_t> rows() {
+    std::vector<std::int32_t> row(count);
+    for (int s = 0; s < count; ++s) row[static_cast<std::size_t>(s)] = s % 10 == 7 ? -1 : s;
+    return row;
+}
+
+void set_ball(LaneBalls& balls, int lane, const std::vector<std::int32_t>& row, Vec3 normal, Vec3 at) {
+    balls.set(lane, frame_about(normal), at);
+    balls.radius[lane] = radius;
+    balls.samples[lane] = row.data();
+    balls.count = count;
+}
+
+std::vector<LaneSphereKernel*> kernels() {
+    std::vector<LaneSphereKernel*> found = {lane_spheres_baseline};
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx2")) found.push_back(lane_spheres_avx2);
+#endif
+    return found;
+}
+
+}  // namespace
+
+TEST(LaneSpheres, AreThoseOfPlainSums) {
+    Random random(4);
+    const std::vector<SphereSample> samples = samples_about_the_pole(random);
+    const std::vector<std::int32_t> row = rows();
+    const Vec3 normal = unit(Vec3{0.1, -0.05, 1}), at = {0.02, 0.03, 1};
+    const Frame frame = frame_about(normal);
+    const auto seen = [&](Vec3 d) { return Vec3{dot(d, frame.u), dot(d, frame.v), dot(d, frame.n)}; };
+    SphereSums sums;
+    int counted = 0;
+    for (const std::int32_t s : row) {
+        if (s < 0) continue;
+        const SphereSample& sample = samples[static_cast<std::size_t>(s)];
+        const Vec3 its = load(sample.normal), d = load(sample.foot) - at;
+        const double along = dot(its, normal);
+        if (!(std::abs(along) >= one_sheet) || !(length(d) < radius) || s == across) continue;
+        sums.add(1 / radius * seen(d), (along < 0 ? -1.0 : 1.0) * seen(its), sample.weight);
+        ++counted;
+    }
+    EXPECT_GE(counted, 20);
+    EXPECT_LT(counted, count - 5);
+    for (LaneSphereKernel* kernel : kernels()) {
+        LaneBalls balls;
+        for (const int lane : {0, 2, 3}) set_ball(balls, lane, row, normal, at);  // and none in one lane
+        LaneSpheres spheres;
+        kernel(samples.data(), balls, spheres);
+        for (int t = 0; t < SphereSums::terms; ++t)
+            for (int i = 0; i < SphereSums::parts; ++i) {
+                for (const int lane : {0, 2, 3}) EXPECT_NEAR(spheres.sums(lane).sum[t][i], sums.sum[t][i], 1e-12);
+                EXPECT_EQ(spheres.sum[t][i][1], 0);
+            }
+    }
+}
+
+TEST(LaneSpheres, StandAloneWithTheSameBitsFromEveryInstructionSet) {
+    Random random(5);
+    const std::vector<SphereSample> samples = samples_about_the_pole(random);
+    const std::vector<std::int32_t> row = rows(), nothing(count, -1);
+    const Vec3 at = {0.02, 0.03, 1};
+    LaneBalls alike, mixed;
+    for (int l = 0; l < fit_lanes; ++l) {
+        set_ball(alike, l, row, {0, 0, 1}, at);
+        set_ball(mixed, l, l == 1 ? nothing : row, l == 2 ? Vec3{NAN, NAN, NAN} : Vec3{0, 0, 1}, at);
+    }
+    LaneSpheres first;
+    lane_spheres_baseline(samples.data(), alike, first);
+    for (LaneSphereKernel* kernel : kernels()) {
+        LaneSpheres again, among;
+        kernel(samples.data(), alike, again);
+        kernel(samples.data(), mixed, among);
+        EXPECT_EQ(std::memcmp(&first, &again, sizeof first), 0);
+        for (int t = 0; t < SphereSums::terms; ++t)
+            for (const int l : {0, 3}) EXPECT_EQ(among.sum[t][5][l], first.sum[t][5][l]);
+        for (const int l : {1, 2}) EXPECT_EQ(among.sum[0][4][l], 0);
+    }
 }

@@ -116,9 +116,13 @@ TEST_P(ForBlocks, ThrowCancelledWhenProgressSaysNo) {
     std::atomic<int> bodies{0};
     Execution cancelling = run();
     cancelling.progress = [](double) { return false; };
-    // With several threads the caller's own thread must get a block to be asked, hence so many that it does.
-    EXPECT_THROW(for_blocks(1000000, 1, cancelling, [&](std::size_t, std::size_t, std::size_t) { ++bodies; }),
-                 Cancelled);
+    // With several threads the caller's own thread must get a block to be asked. So the others are slow: on a busy
+    // machine they would be through with a million before it has its turn.
+    const auto count = [&bodies, caller = std::this_thread::get_id()](std::size_t, std::size_t, std::size_t) {
+        ++bodies;
+        if (std::this_thread::get_id() != caller) std::this_thread::sleep_for(std::chrono::microseconds(10));
+    };
+    EXPECT_THROW(for_blocks(1000000, 1, cancelling, count), Cancelled);
     EXPECT_LT(bodies, 1000000);
 }
 

@@ -1,0 +1,9 @@
+#include "lane_spheres_kernel.h"
+
+namespace gaussmap {
+
+void lane_spheres_avx2(const SphereSample* samples, const LaneBalls& balls, LaneSpheres& spheres) {
+    sum_up(samples, balls, spheres);
+}
+
+}  // namespace gaussmap

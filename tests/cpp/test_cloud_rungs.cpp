@@ -1,0 +1,127 @@
+// What a rung of the ladder finds: exact on a sphere for every family, at borders too; and the level sets of spheres of
+// the spheres' surface against both passes made one by one.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "../../src/rung_fits.h"
+#include "support.h"
+
+using namespace gaussmap;
+using support::Random;
+
+namespace {
+
+Elements cloud_of(std::size_t count) {
+    Elements elements;
+    elements.count = count;
+    return elements;
+}
+
+/// Points that are their own feet; where the surface looks is not known.
+Level level_of(const std::vector<Vec3>& points) {
+    Level level;
+    for (const Vec3 p : points) level.position.insert(level.position.end(), {p.x, p.y, p.z});
+    level.foot = level.position;
+    level.normal.assign(points.size(), Vec3{NAN, NAN, NAN});
+    level.area.assign(points.size(), 1);
+    return level;
+}
+
+struct Place {
+    Vec3 normal, foot;
+};
+
+/// The others that are nearest to a point.
+std::vector<std::size_t> nearest(const std::vector<Vec3>& points, std::size_t i, std::size_t k) {
+    std::vector<std::pair<double, std::size_t>> found;
+    for (std::size_t j = 0; j < points.size(); ++j) found.emplace_back(squared(points[j] - points[i]), j);
+    std::sort(found.begin(), found.end());
+    std::vector<std::size_t> row;
+    for (std::size_t j = 0; j < k; ++j)
+        if (found[j].second != i) row.push_back(found[j].second);
+    return row;
+}
+
+/// Sums about a place of a surface, over what of a row is of its sheet and within the radius, in units of that.
+SphereSums sums_about(const std::vector<Place>& surface, std::size_t i, const std::vector<std::size_t>& row,
+                      const std::vector<float>& weight, double radius) {
+    SphereSums sums;
+    sums.add({0, 0, 0}, surface[i].normal, double(weight[i]));
+    for (const std::size_t j : row) {
+        const Vec3 d = 1 / radius * (surface[j].foot - surface[i].foot);
+        const double along = dot(surface[j].normal, surface[i].normal), over = dot(d, surface[i].normal);
+        if (!(std::abs(along) >= one_sheet) || !(squared(d) < 1)) continue;
+        if (!(over * over < overhead * squared(d) + near_by)) continue;
+        sums.add(d, (along < 0 ? -1.0 : 1.0) * surface[j].normal, double(weight[j]));
+    }
+    return sums;
+}
+
+}  // namespace
+
+TEST(RungFits, AreExactOnASphereWithABorder) {
+    Random random(1);
+    std::vector<Vec3> points;
+    while (points.size() < 400) {
+        const Vec3 p = unit(Vec3{random.normal(), random.normal(), random.normal()});
+        if (p.z > 0.3) points.push_back(p);
+    }
+    Level level = level_of(points);
+    const std::vector<std::uint8_t> active(points.size(), 1);
+    RungFits fits(cloud_of(points.size()), level, active, {});
+    // Views settle from rung to rung.
+    for (int rung = 0; rung < 2; ++rung) fits.step(rung);
+    const Rung found = fits.step(2);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_NEAR(std::abs(dot(found.normal[i], points[i])), 1, 1e-12);
+        for (int f = 0; f < families; ++f) {
+            EXPECT_NEAR(found.density[static_cast<std::size_t>(f)][i], 2, 1e-6) << f;
+            EXPECT_NEAR(squared_norm(found.tensor[static_cast<std::size_t>(f)][i]), 2, 1e-8) << f;
+            EXPECT_NEAR(length(product(found.tensor[static_cast<std::size_t>(f)][i], points[i])), 0, 1e-8) << f;
+        }
+    }
+}
+
+TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
+    constexpr double one_sided = 0.2;
+    constexpr int rung = 0;
+    Random random(2);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 400; ++i) {
+        const double u = 2 * random.uniform() - 1, v = 2 * random.uniform() - 1;
+        points.push_back({u, v, 0.2 * std::sin(3 * u) + 0.3 * v * v + 0.01 * random.normal()});
+    }
+    Level level = level_of(points);
+    for (float& area : level.area) area = static_cast<float>(0.5 + random.uniform());
+    const std::vector<std::uint8_t> active(points.size(), 1);
+    RungFits fits(cloud_of(points.size()), level, active, {});
+    const Rung found = fits.step(rung);
+    std::vector<Place> quadrics, surface;
+    std::vector<std::vector<std::size_t>> rows;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        quadrics.push_back({found.normal[i], level.foot_of(i)});
+        rows.push_back(nearest(points, i, static_cast<std::size_t>(rung_neighbors(rung))));
+    }
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto radius = double(found.size[i]);
+        const SphereSums sums = sums_about(quadrics, i, rows[i], level.area, radius);
+        const LevelSet through = sums.level_set();
+        const Vec3 middle = sums.middle() - dot(sums.middle(), quadrics[i].normal) * quadrics[i].normal;
+        const bool cut = length(middle) > one_sided;
+        left += cut ? 1 : 0;
+        surface.push_back(cut ? quadrics[i]
+                              : Place{through.normal, quadrics[i].foot + radius * through.height * through.normal});
+    }
+    EXPECT_GT(left, 40U);
+    EXPECT_LT(left, 300U);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto radius = double(found.size[i]);
+        const LevelSet through = sums_about(surface, i, rows[i], level.area, radius).level_set();
+        const double truth = squared_norm(through.tensor) / (radius * radius);
+        EXPECT_NEAR(found.density[static_cast<int>(Family::sphere)][i], truth, 1e-5 * (1 + truth)) << i;
+    }
+}
