@@ -71,7 +71,8 @@ TEST(RungFits, AreExactOnASphereWithABorder) {
     }
     Level level = level_of(points);
     const std::vector<std::uint8_t> active(points.size(), 1);
-    RungFits fits(cloud_of(points.size()), level, active, {});
+    const Elements cloud = cloud_of(points.size());
+    RungFits fits(cloud, level, active, {});
     // Views settle from rung to rung.
     for (int rung = 0; rung < 2; ++rung) fits.step(rung);
     const Rung found = fits.step(2);
@@ -97,7 +98,8 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
     Level level = level_of(points);
     for (float& area : level.area) area = static_cast<float>(0.5 + random.uniform());
     const std::vector<std::uint8_t> active(points.size(), 1);
-    RungFits fits(cloud_of(points.size()), level, active, {});
+    const Elements cloud = cloud_of(points.size());
+    RungFits fits(cloud, level, active, {});
     const Rung found = fits.step(rung);
     std::vector<Place> quadrics, surface;
     std::vector<std::vector<std::size_t>> rows;
