@@ -163,10 +163,18 @@ void RungFits::average(int rung, Rung& found) {
                           double(level_.area[i])};
         }
     });
-    for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
+    const auto averaged = [&](std::size_t i) { return known(i) && averages_wanted(i); };
+    for_lanes(level_.count(), averaged, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
         average_elements(who, filled, static_cast<int>(count), samples, found);
     });
     if (families_tried(elements_) > static_cast<int>(Family::sphere)) keep_spheres(static_cast<int>(count), found);
+}
+
+/// Quadrics ask for what the slopes tell of borders.
+bool RungFits::averages_wanted(std::size_t i) const {
+    constexpr Family asking[] = {Family::quadric, Family::half_mean, Family::mean, Family::half_slope, Family::slope};
+    return std::any_of(std::begin(asking), std::end(asking),
+                       [&](Family family) { return dead_[static_cast<std::size_t>(family)][i] == 0; });
 }
 
 /// Over the samples within half the neighbours' reach and within all of it.

@@ -19,6 +19,7 @@
 namespace gaussmap {
 
 using Field = std::vector<float>;
+using FamilyFlags = std::array<std::vector<std::uint8_t>, families>;
 
 /// What a rung found, an element each; NaN where it was not on the rung. Two of a kind: of the quadric and of the
 /// quartic. Variances are for heights of unit variance on the lowest level.
@@ -65,10 +66,14 @@ using Surface = std::vector<SphereSample>;
 /// The fits of a level's elements, rung after rung; each moves the feet of the elements to the surface that it finds.
 class RungFits {
   public:
-    RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const Execution& run)
+    /// \param active  elements that are fitted.
+    /// \param dead    of each family, elements for which it need not be found.
+    RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const FamilyFlags& dead,
+             const Execution& run)
         : elements_(elements),
           level_(level),
           active_(active),
+          dead_(dead),
           run_{run.threads, {}},
           index_(Points(level.position), run_),
           most_samples_(elements.connected || level.members == 1 ? few_samples : all_samples),
@@ -96,12 +101,14 @@ class RungFits {
     template <class Keep>
     void find_level_sets(int count, const Surface& surface, const Rung& found, Keep&& keep) const;
     void keep_spheres(int count, Rung& found) const;
+    bool averages_wanted(std::size_t i) const;
     void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
               Rung& found);
 
     const Elements& elements_;
     Level& level_;
     const std::vector<std::uint8_t>& active_;
+    const FamilyFlags& dead_;
     Execution run_;
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width_` neighbours of each element

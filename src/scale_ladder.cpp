@@ -88,7 +88,7 @@ double bias_growth(const Rung& rung, int family, std::size_t i) {
 struct Standing {
     std::vector<std::uint8_t> active, settled;
     Field noise;  ///< variance of the heights on the lowest level
-    std::array<std::vector<std::uint8_t>, families> dead;
+    FamilyFlags dead;
     std::array<Field, families> least;  ///< squared error of each family's best
     std::array<Field, families> bias;   ///< squared, as far as it is sure on the rungs below
 
@@ -140,6 +140,12 @@ class Ladder {
     Changes find_changes(int rung, const Rung& lower, const Rung& upper);
     void weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes);
 
+    float least_of_all(std::size_t i) const {
+        float least = never;
+        for (int family = 0; family < tried_; ++family) least = std::min(least, standing_.least[family][i]);
+        return least;
+    }
+
     const Level& level_;
     const int tried_;
     Standing& standing_;
@@ -176,6 +182,9 @@ constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
+
+/// Risks, relative to another, that are too large to count beside it.
+constexpr float far_above = 3;
 
 /// What an estimate counts, by the inverse fourth power of its risk; infinite risks count nothing.
 double weight_of(float risk) {
@@ -266,10 +275,12 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
             known_bias[i] =
                 static_cast<float>(std::pow(std::max(step / growth, std::sqrt(double(known_bias[i]))) + step, 2));
         }
-        // Far above its own best it will not come back.
+        // Far above its own best it will not come back, nor where its bias alone, which does not fall, is far above the
+        // best of all.
         if (standing_.settled[i]) {
             standing_.least[family][i] = std::min(standing_.least[family][i], risk);
-            if (risk > 3 * standing_.least[family][i]) standing_.dead[family][i] = 1;
+            if (risk > far_above * standing_.least[family][i] || known_bias[i] > far_above * least_of_all(i))
+                standing_.dead[family][i] = 1;
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
         const Estimate estimate = {std::max(0.0, unbiased(lower, family, noise, i)),
@@ -370,7 +381,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     Standing standing(std::move(active));
     Rung lower;
     for (int rung = 0; rung < most_rungs;) {
-        RungFits fits(elements, levels.back(), standing.active, run);
+        RungFits fits(elements, levels.back(), standing.active, standing.dead, run);
         Ladder ladder(levels.back(), families_tried(elements), standing, measured.back(), run);
         const int level = level_of(rung);
         bool on = true;

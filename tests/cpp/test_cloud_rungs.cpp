@@ -30,6 +30,12 @@ Level level_of(const std::vector<Vec3>& points) {
     return level;
 }
 
+FamilyFlags nobody(std::size_t count) {
+    FamilyFlags flags;
+    for (std::vector<std::uint8_t>& of_family : flags) of_family.assign(count, 0);
+    return flags;
+}
+
 struct Place {
     Vec3 normal, foot;
 };
@@ -72,7 +78,8 @@ TEST(RungFits, AreExactOnASphereWithABorder) {
     Level level = level_of(points);
     const std::vector<std::uint8_t> active(points.size(), 1);
     const Elements cloud = cloud_of(points.size());
-    RungFits fits(cloud, level, active, {});
+    const FamilyFlags dead = nobody(points.size());
+    RungFits fits(cloud, level, active, dead, {});
     // Views settle from rung to rung, and are some 1e-5 off here.
     for (int rung = 0; rung < 2; ++rung) fits.step(rung);
     const Rung found = fits.step(2);
@@ -99,7 +106,8 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
     for (float& area : level.area) area = static_cast<float>(0.5 + random.uniform());
     const std::vector<std::uint8_t> active(points.size(), 1);
     const Elements cloud = cloud_of(points.size());
-    RungFits fits(cloud, level, active, {});
+    const FamilyFlags dead = nobody(points.size());
+    RungFits fits(cloud, level, active, dead, {});
     const Rung found = fits.step(rung);
     std::vector<Place> quadrics, surface;
     std::vector<std::vector<std::size_t>> rows;
@@ -125,5 +133,35 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
         const LevelSet through = sums_about(surface, i, rows[i], level.area, radius).level_set();
         const double truth = squared_norm(through.tensor) / (radius * radius);
         EXPECT_NEAR(found.density[static_cast<int>(Family::sphere)][i], truth, 1e-5 * (1 + truth)) << i;
+    }
+}
+
+TEST(RungFits, AveragesAreNotFoundWhereNoFamilyAsksForThem) {
+    Random random(3);
+    std::vector<Vec3> points;
+    for (int i = 0; i < 200; ++i) points.push_back(unit(Vec3{random.normal(), random.normal(), random.normal()}));
+    const std::vector<std::uint8_t> active(points.size(), 1);
+    const Elements cloud = cloud_of(points.size());
+    Level all = level_of(points), some = all;
+    const FamilyFlags nobody_dead = nobody(points.size());
+    FamilyFlags dead = nobody_dead;
+    for (std::size_t i = 0; i < points.size(); i += 2)
+        for (const Family family : {Family::quadric, Family::half_mean, Family::mean, Family::half_slope})
+            dead[static_cast<std::size_t>(family)][i] = 1;
+    for (std::size_t i = 0; i < points.size(); i += 4) dead[static_cast<std::size_t>(Family::slope)][i] = 1;
+    RungFits fits_of_all(cloud, all, active, nobody_dead, {}), fits_of_some(cloud, some, active, dead, {});
+    const Rung whole = fits_of_all.step(1), part = fits_of_some.step(1);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (const Family family : {Family::half_mean, Family::mean, Family::half_slope, Family::slope}) {
+            const auto f = static_cast<std::size_t>(family);
+            if (i % 4 == 0)
+                EXPECT_TRUE(std::isnan(part.density[f][i]) && !std::isnan(whole.density[f][i])) << i;
+            else
+                EXPECT_EQ(part.density[f][i], whole.density[f][i]) << i;
+        }
+        for (const Family family : {Family::quadric, Family::quartic, Family::sphere}) {
+            const auto f = static_cast<std::size_t>(family);
+            EXPECT_EQ(part.density[f][i], whole.density[f][i]) << i;
+        }
     }
 }
