@@ -25,7 +25,7 @@ struct alignas(32) SurfaceSample {
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Four elements, and the samples about them.
+/// Where four elements are seen from, and the samples about them.
 struct alignas(32) LaneFrames {
     LaneValues axis[3][3] = {};  ///< of the frame about the normal: u, v, n
     LaneValues foot[3] = {};
@@ -40,6 +40,7 @@ struct alignas(32) LaneFrames {
     }
 };
 
+/// Four elements that averages are taken about.
 struct alignas(32) LaneCentres : LaneFrames {
     LaneValues unit = {};      ///< what places in the tangent plane are multiplied by
     LaneValues reach[2] = {};  ///< of the windows, squared; the first is the narrower

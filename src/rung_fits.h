@@ -67,7 +67,7 @@ using Surface = std::vector<SphereSample>;
 class RungFits {
   public:
     /// \param active  elements that are fitted.
-    /// \param dead    of each family, elements for which it need not be found.
+    /// \param dead    of each family, elements that it has left: averages that no family asks for are not made.
     RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const FamilyFlags& dead,
              const Execution& run)
         : elements_(elements),
