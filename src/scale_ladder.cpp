@@ -40,20 +40,22 @@ struct Traits {
     /// The same at borders, where the bias of quadrics and means grows with h, as odd orders do not cancel over half
     /// discs: at most the growth of h less 1, 0.2, and a little more where even ones are as large.
     double bias_at_border;
-    /// Growth of the bias that is told of, relative to the growth that a choice reckons with. Level sets of spheres are
-    /// exact on spheres and nearly so along circles; their bias sets in late, and then more than doubles from rung to
-    /// rung. Told is what slower growth would mean.
+    /// Growth of the bias that is told of, relative to the growth that a choice reckons with. That of operators
+    /// averaged where windows are as wide as the shape slows down. Level sets of spheres are exact on spheres and
+    /// nearly so along circles; their bias sets in late, and then more than doubles from rung to rung: told is what
+    /// slower growth would mean. That of wide slopes and of quartics is less than the changes let fear: so is the error
+    /// of what was chosen, and the bias of quartics is told by their windows.
     double told;
     /// Residuals, relative to the noise, of its quadrics or quartics up to which a surface was met alone.
     double fitting;
 };
-constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 1, 2},
-                                                  {0.24, 0.31, 0.38, 0.23, 1, 2},
-                                                  {0.08, 0.35, 0.36, 0.22, 1, 2},
-                                                  {0.20, 0.30, 0.36, 0.36, 1, 2},
-                                                  {0.09, 0.28, 0.32, 0.32, 1, 2},
-                                                  {1, 0.50, 0.78, 0.78, 1, 2},
-                                                  {0.45, 0.33, 1, 1, 0.28, 2.5}}};
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.6, 2},
+                                                  {0.27, 0.31, 0.38, 0.23, 0.6, 2},
+                                                  {0.09, 0.35, 0.36, 0.22, 0.6, 2},
+                                                  {0.23, 0.30, 0.36, 0.36, 1, 2},
+                                                  {0.10, 0.28, 0.32, 0.32, 1.35, 2},
+                                                  {1, 0.50, 0.78, 0.78, 3, 2},
+                                                  {0.45, 0.33, 1, 1, 0.31, 2.5}}};
 
 /// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².

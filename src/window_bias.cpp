@@ -4,7 +4,7 @@
 // would bring back more noise than it mends, but tells how much is missing where all rungs smooth alike. Level sets of
 // spheres keep more of a density than averages do, by how much the shape decides. So twicing tells too much of them
 // where they are nearly exact, as on a catenoid, and what the next rung changes too much where it hardly errs, as on a
-// torus; the mean of the two, the geometric one, is about right on either.
+// torus; a geometric mean of the two is about right on either.
 #include "window_bias.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 /// window 1 − (1 − K)² does, K being half as wide.
 constexpr int of_quadrics = 60, of_quartics = 120;
 /// What is missing, squared, relative to what goes at second sight.
-constexpr float missing_of_quadrics = 5, missing_of_quartics = 6, missing_of_spheres = 10;
+constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F, missing_of_spheres = 11;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
@@ -76,7 +76,8 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
         if (wanted[i] == 0 || !std::isfinite(bias[i])) continue;
         const float noise = measured.noise[i], told = std::max(0.0F, measured.error[i] - noise),
                     more = std::max(0.0F, bias[i] - missing_of_noise * noise);
-        measured.error[i] = noise + (of_spheres(i) ? std::sqrt(told * more) : told + more);
+        // Of spheres the geometric mean, in which what the next rung changes counts three times.
+        measured.error[i] = noise + (of_spheres(i) ? std::sqrt(told * std::sqrt(told * more)) : told + more);
     }
 }
 

@@ -69,11 +69,24 @@ TEST(WindowBias, IsNothingWhereTheDensityIsOneValue) {
     for (const float more : added(1, Family::sphere, 0.001F, 0.0004F)) EXPECT_NEAR(more, -0.0006F, 1e-9);
 }
 
+TEST(WindowBias, OfQuarticsIsWhatTheirWindowTakesAwayTwice) {
+    // Five averages; what both of them leave of a wave is the square of what one of them takes.
+    for (const double length : {24.0, 16.0}) {
+        const std::vector<float> found = added(length, Family::quartic, 0.001F, 0);
+        const double left = std::pow((1 + 2 * std::cos(2 * std::numbers::pi / length)) / 3, 5);
+        const double expected = 0.5 * 5.4 * std::pow(648 / (120.0 * 5), 4) * std::pow(1 - left, 4);
+        double mean = 0;
+        for (const float more : found) mean += static_cast<double>(more) / count;
+        EXPECT_NEAR(mean, expected, 0.001 * expected) << length;
+    }
+}
+
 TEST(WindowBias, OfSpheresIsTheMeanOfTwoTellings) {
-    const std::vector<float> of_mean = added(24, Family::mean, 0.003F, 0),
-                             of_sphere = added(24, Family::sphere, 0.003F, 0);
+    // What the next rung changes counts three times, twicing once.
+    const float told = 0.003F;
+    const std::vector<float> of_mean = added(24, Family::mean, told, 0), of_sphere = added(24, Family::sphere, told, 0);
     for (std::size_t i = 0; i < count; ++i)
-        EXPECT_NEAR(0.003F + of_sphere[i], std::sqrt(0.003F * 2 * of_mean[i]), 1e-5F) << i;
+        EXPECT_NEAR(told + of_sphere[i], std::pow(told * told * told * 2.2F * of_mean[i], 0.25F), 1e-5F) << i;
 }
 
 TEST(WindowBias, DoesNotCountWhatNoiseShows) {
