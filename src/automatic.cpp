@@ -157,7 +157,7 @@ void look_at_block(const Elements& elements, const Tile& tile, double scale, std
             tile.connect(j, row(j), result.graph);
             lowered += look.lowered && finite(look.normal);
             result.normal[to] = look.normal;
-            result.choice[to] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : 2);
+            result.choice[to] = static_cast<std::uint8_t>(!finite(look.normal) ? 0 : look.lowered ? 1 : look_choice);
             keep(look, to, looks);
         }
     }
@@ -229,6 +229,7 @@ std::vector<std::uint8_t> settle_looks(const Looks& looks, AutomaticCurvature& r
     std::vector<std::uint8_t> noisy(result.density.size(), 0);
     for (std::size_t i = 0; i < noisy.size(); ++i) {
         mix(looks, i, result);
+        result.on_grid[i] = on_grid(looks, i);
         if (!is_noisy(looks, i)) continue;
         noisy[i] = 1;
         result.error[i] = std::hypot(result.error[i], std::sqrt(noise_error(looks, i)));
@@ -245,6 +246,7 @@ AutomaticCurvature looked_at(const Elements& elements, const Tile& tile, double 
     result.normal.resize(tile.count);
     result.tensor.resize(tile.count);
     result.choice.resize(tile.count);
+    result.on_grid.resize(tile.count);
     result.graph.index.assign(tile.count * ElementGraph::degree, -1);
     noisy = settle_looks(look_around(elements, tile, scale, result, run), result);
     return result;
@@ -278,6 +280,17 @@ AutomaticCurvature automatic_curvature(const Elements& elements, double size, co
     AutomaticCurvature result = looked_at(elements, {0, elements.count}, scale, noisy, part_of(run, 0, 0.3));
     climb(elements, scale, result.graph, std::move(noisy), result, part_of(run, 0.3, 1));
     if (run.progress && !run.progress(1)) throw Cancelled();
+    unscale(scale, result);
+    return result;
+}
+
+AutomaticCurvature first_looks(const Elements& elements, std::size_t first, std::size_t count, double size,
+                               const Execution& run) {
+    const double scale = scale_of(elements.count, size);
+    std::vector<std::uint8_t> noisy;
+    AutomaticCurvature result = looked_at(elements, {first, count}, scale, noisy, run);
+    for (std::size_t i = 0; i < count; ++i)
+        if (noisy[i]) result.choice[i] = 0;
     unscale(scale, result);
     return result;
 }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "element_graph.h"
 #include "fitted_curvature.h"
@@ -12,6 +14,8 @@ namespace gaussmap {
 
 /// What was measured, and how far noise and averages reach.
 struct AutomaticCurvature : FittedCurvature {
+    std::vector<std::uint8_t>
+        on_grid;         ///< whether remainders are alike from one element to the next, by the first look
     ElementGraph graph;  ///< of the elements, for averages over the surface
     double unit = 1;     ///< about an edge's squared length, a power of 4
 };
@@ -20,8 +24,16 @@ struct AutomaticCurvature : FittedCurvature {
 /// The same bits for any number of threads. Time O(n) fits of at least 24 neighbours; more only where there is noise.
 AutomaticCurvature automatic_curvature(const Elements& elements, double size, const Execution& run);
 
+/// The choice of elements whose quartics stand, by the first look; those with too few neighbours for one have 1.
+constexpr std::uint8_t look_choice = 2;
+
+/// The first look alone, at elements that follow each other, by themselves; 0 is the choice of those that noise would
+/// send on to the ladder.
+AutomaticCurvature first_looks(const Elements& elements, std::size_t first, std::size_t count, double size,
+                               const Execution& run);
+
 /// Takes what was measured at an element: entry i of `found`.
-using TakeMeasured = std::function<void(const FittedCurvature& found, std::size_t i, std::size_t element)>;
+using TakeMeasured = std::function<void(const AutomaticCurvature& found, std::size_t i, std::size_t element)>;
 
 /// The same, handed out element by element, not always in order; the number of `lowered` ones. Many elements are looked
 /// at in tiles, of those that follow each other, and forgotten, as long as there is no noise; averages over the surface

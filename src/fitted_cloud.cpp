@@ -7,6 +7,7 @@
 #include "automatic.h"
 #include "bounding_box.h"
 #include "clock.h"
+#include "half_sample.h"
 #include "jet_curvature.h"
 #include "neighbor_rows.h"
 #include "normal_regression.h"
@@ -56,6 +57,21 @@ void place(const FittedCurvature& found, std::size_t i, Points normals, std::siz
     if (options.tensor && finite(normal)) store(result.tensor, to, principal(found.tensor[i], sign, normal));
 }
 
+/// What half of the points tell of the errors.
+/// \param on_grid  of each of the cloud's points.
+void correct_errors(const OrderedCloud& cloud, double size, const std::vector<std::uint8_t>& on_grid,
+                    const Execution& run, CloudCurvature& result) {
+    const auto place_of = [&](std::size_t i) { return static_cast<std::size_t>(cloud.source[i]); };
+    const auto looked = [&](std::size_t to) { return result.choice[to] == look_choice; };
+    const auto density = [&](std::size_t i) {
+        return looked(place_of(i)) && !on_grid[i] ? result.density[place_of(i)]
+                                                  : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double factor = told_error_factor(elements_of(cloud), size, density, run);
+    for (std::size_t to = 0; to < result.error.size(); ++to)
+        if (looked(to)) result.error[to] *= factor;
+}
+
 /// Unit normals of the first holders of positions.
 ElementNormals given_normals(const OrderedCloud& cloud, Points normals) {
     ElementNormals given;
@@ -103,7 +119,13 @@ CloudCurvature fitted_cloud(Points points, Points normals, const CloudCurvatureO
             place(found, i, normals, static_cast<std::size_t>(cloud.source[element]), options, result);
         };
         if (options.estimator == Estimator::automatic) {
-            result.lowered = automatic_curvature(elements_of(cloud), size, take, run);
+            std::vector<std::uint8_t> on_grid(options.confidence ? cloud.count() : 0);
+            const auto take_all = [&](const AutomaticCurvature& found, std::size_t i, std::size_t element) {
+                take(found, i, element);
+                if (options.confidence) on_grid[element] = found.on_grid[i];
+            };
+            result.lowered = automatic_curvature(elements_of(cloud), size, take_all, run);
+            if (options.confidence) correct_errors(cloud, size, on_grid, run, result);
         } else {
             const FittedCurvature found = fit(cloud, normals, options, run, result);
             for (std::size_t i = 0; i < cloud.count(); ++i) take(found, i, i);
