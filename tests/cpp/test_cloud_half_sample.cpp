@@ -152,8 +152,9 @@ TEST(HalfSample, LooksAtSomeOfManyWithAnyNumberOfThreads) {
     support::Random random(5);
     Array x(sheet.count), y(sheet.count);
     for (std::size_t i = 0; i < sheet.count; ++i) {
-        x[i] = static_cast<double>(cell[i] % static_cast<int>(side)) + 0.5 * random.uniform();
-        y[i] = static_cast<double>(cell[i] / static_cast<int>(side)) + 0.5 * random.uniform();
+        const int column = cell[i] % static_cast<int>(side), row = cell[i] / static_cast<int>(side);
+        x[i] = column + 0.5 * random.uniform();
+        y[i] = row + 0.5 * random.uniform();
     }
     sheet.position = [&](std::size_t i) { return Vec3{x[i], y[i], 2 * std::sin(x[i] / 5) * std::cos(y[i] / 6)}; };
     sheet.neighbors = [&](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
