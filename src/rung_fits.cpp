@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t grain = 256;
 
-/// Rungs up to which the rings of a mesh are searched at once: 72 neighbours, then 216, as far as the lowest level
-/// goes.
-constexpr int few_rings = 3, many_rings = 6;
+/// The last rung on the lowest level of a mesh. Rings are searched for its 216 neighbours at once: nearly every element
+/// gets there, and a search for fewer would have to be made again.
+constexpr int last_by_rings = 6;
 
 LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
@@ -47,17 +47,15 @@ constexpr double sandwich[2] = {0.474, 0.627}, weight_of_unknown[2] = {0.51, 0.4
 Rung RungFits::step(int rung) {
     Rung found(level_.count());
     constexpr std::size_t part = 64 * grain;  // whose rows are held at once
-    if (by_rings()) keep_rings(rung);
+    if (by_rings() && rings_.empty()) keep_rings();
     for (std::size_t first = 0; first < level_.count(); first += part)
         fit(rung, first, std::min(level_.count(), first + part), found);
     average(rung, found);
     return found;
 }
 
-/// Searches for many neighbours begin with those of searches for few: two of them do for all rungs.
-void RungFits::keep_rings(int rung) {
-    if (window(rung) <= ring_width_) return;
-    ring_width_ = window(rung <= few_rings ? few_rings : many_rings);
+void RungFits::keep_rings() {
+    ring_width_ = window(last_by_rings);
     rings_.assign(level_.count() * ring_width_, -1);
     for_blocks(level_.count(), Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
         const auto on = [&](std::size_t i) { return active_[i] != 0; };

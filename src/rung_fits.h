@@ -91,7 +91,7 @@ class RungFits {
     std::size_t samples_stride(std::size_t window) const { return (window + most_samples_ - 1) / most_samples_; }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
-    void keep_rings(int rung);
+    void keep_rings();
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
     void keep(std::size_t i, const WindowFit& fit, Rung& found);

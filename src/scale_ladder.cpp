@@ -126,12 +126,20 @@ struct Changes {
     std::array<Field, families> around;    ///< mean of the neighbours' densities
 };
 
+/// Steps of diffusion. Noise of a part of an edge is chosen for by windows that are small for the shape, so that a wide
+/// region is no longer alike.
+constexpr int wide_reach = 60, wide_reach_on_meshes = 20, near_reach = 12, reach_of_variances = 15;
+
 /// One level's part of the climb.
 class Ladder {
   public:
-    /// \param tried  how many families, the first ones.
-    Ladder(const Level& level, int tried, Standing& standing, Measured& measured, const Execution& run)
-        : level_(level), tried_(tried), standing_(standing), measured_(measured), run_{run.threads, {}} {}
+    Ladder(const Elements& elements, const Level& level, Standing& standing, Measured& measured, const Execution& run)
+        : level_(level),
+          tried_(families_tried(elements)),
+          wide_reach_(elements.connected ? wide_reach_on_meshes : wide_reach),
+          standing_(standing),
+          measured_(measured),
+          run_{run.threads, {}} {}
 
     /// Weigh the finds of a rung by what the next one changes.
     void weigh(int rung, const Rung& lower, const Rung& upper);
@@ -149,13 +157,11 @@ class Ladder {
     }
 
     const Level& level_;
-    const int tried_;
+    const int tried_, wide_reach_;
     Standing& standing_;
     Measured& measured_;
     Execution run_;
 };
-
-constexpr int reach_of_errors = 60, near_reach = 12, reach_of_variances = 15;  ///< steps of diffusion
 
 /// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
 /// borders, where windows are half discs, not on the first rungs. Until then it may grow from rung to rung by as much
@@ -232,7 +238,7 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     }
     diffuse(squares, level_.graph, near_reach, run_);
     changes.near = changes.square;
-    diffuse(squares, level_.graph, reach_of_errors - near_reach, run_);
+    diffuse(squares, level_.graph, wide_reach_ - near_reach, run_);
     diffuse(densities, level_.graph, 1, run_);
     return changes;
 }
@@ -384,7 +390,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     Rung lower;
     for (int rung = 0; rung < most_rungs;) {
         RungFits fits(elements, levels.back(), standing.active, standing.dead, run);
-        Ladder ladder(levels.back(), families_tried(elements), standing, measured.back(), run);
+        Ladder ladder(elements, levels.back(), standing, measured.back(), run);
         const int level = level_of(rung);
         bool on = true;
         for (; rung < most_rungs && level_of(rung) == level; ++rung) {
