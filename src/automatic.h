@@ -14,10 +14,9 @@ namespace gaussmap {
 
 /// What was measured, and how far noise and averages reach.
 struct AutomaticCurvature : FittedCurvature {
-    std::vector<std::uint8_t>
-        on_grid;         ///< whether remainders are alike from one element to the next, by the first look
-    ElementGraph graph;  ///< of the elements, for averages over the surface
-    double unit = 1;     ///< about an edge's squared length, a power of 4
+    std::vector<std::uint8_t> on_grid;  ///< whether remainders are alike from one element to the next
+    ElementGraph graph;                 ///< of the elements, for averages over the surface
+    double unit = 1;                    ///< about an edge's squared length, a power of 4
 };
 
 /// \param size  the diagonal of the elements' box, positive and finite.
