@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "bounding_box.h"
-#include "gaussmap/neighbors.h"
+#include "ordered_cloud.h"
 
 namespace gaussmap {
 namespace {
@@ -31,14 +31,6 @@ std::vector<std::int32_t> usable_faces(Triangles faces, std::vector<std::uint8_t
         }
     }
     return usable;
-}
-
-std::vector<std::int32_t> order_of(Points vertices, const std::vector<std::int32_t>& used, const Execution& run) {
-    if (used.size() == vertices.count) return spatial_order(vertices, {run.threads, {}});
-    std::vector<double> points;
-    points.reserve(3 * used.size());
-    for (const std::int32_t v : used) points.insert(points.end(), vertices[v], vertices[v] + 3);
-    return spatial_order(points, {run.threads, {}});
 }
 
 /// Faces by the least of their vertices, which comes first, then by the others, then by their index.
@@ -103,11 +95,11 @@ DecimationInput decimation_input(Points vertices, Triangles faces, const Executi
     const double largest = std::max({half.x, half.y, half.z});
     in.diagonal = largest > 0 ? 2 * largest * length(1 / largest * half) : 1;
 
-    const std::vector<std::int32_t> order = order_of(vertices, used, run);
+    const std::vector<std::int32_t> order = spatial_order_of(vertices, used, {run.threads, {}});
     std::vector<std::int32_t> rank(vertices.count);
     in.positions.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::int32_t v = used[order[i]];
+        const std::int32_t v = order[i];
         in.positions[i] = 1 / in.diagonal * (load(vertices[v]) - in.centre);
         rank[v] = static_cast<std::int32_t>(i);
     }

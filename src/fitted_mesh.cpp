@@ -8,11 +8,11 @@
 
 #include "automatic.h"
 #include "bounding_box.h"
-#include "gaussmap/neighbors.h"
 #include "half_sample.h"
 #include "jet_curvature.h"
 #include "normal_regression.h"
 #include "one_ring.h"
+#include "ordered_cloud.h"
 #include "parallel.h"
 #include "pool.h"
 #include "shape_operator.h"
@@ -65,32 +65,26 @@ void take_sides(FittedCurvature& found, MeshCurvature& result) {
 /// What half of the vertices of usable faces tell of the errors.
 void correct_errors(Points vertices, const VertexRings& rings, const Elements& elements, double size,
                     const Execution& run, AutomaticCurvature& found) {
-    std::vector<std::size_t> used;
-    std::vector<double> places;
-    for (std::size_t v = 0; v < vertices.count; ++v) {
-        if (rings.degree(v) == 0) continue;
-        used.push_back(v);
-        places.insert(places.end(), vertices[v], vertices[v] + 3);
-    }
-    std::vector<std::size_t> vertex;  // along the space-filling curve
+    std::vector<std::int32_t> used;
+    for (std::size_t v = 0; v < vertices.count; ++v)
+        if (rings.degree(v) > 0) used.push_back(static_cast<std::int32_t>(v));
+    const std::vector<std::int32_t> order = spatial_order_of(vertices, used, {run.threads, {}});
+    const auto vertex = [&](std::size_t i) { return static_cast<std::size_t>(order[i]); };
     std::vector<std::int32_t> rank(vertices.count);
-    for (const std::int32_t i : spatial_order(places, {run.threads, {}})) {
-        rank[used[static_cast<std::size_t>(i)]] = static_cast<std::int32_t>(vertex.size());
-        vertex.push_back(used[static_cast<std::size_t>(i)]);
-    }
+    for (std::size_t i = 0; i < order.size(); ++i) rank[vertex(i)] = static_cast<std::int32_t>(i);
     Elements ordered;
-    ordered.count = vertex.size();
+    ordered.count = order.size();
     ordered.connected = true;
-    ordered.position = [&](std::size_t i) { return elements.position(vertex[i]); };
+    ordered.position = [&](std::size_t i) { return elements.position(vertex(i)); };
     ordered.neighbors = [&](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
         for (std::size_t i = first; i < last; ++i, rows += k) {
-            elements.neighbors(vertex[i], vertex[i] + 1, k, rows);
+            elements.neighbors(vertex(i), vertex(i) + 1, k, rows);
             for (int j = 0; j < k && rows[j] >= 0; ++j) rows[j] = rank[static_cast<std::size_t>(rows[j])];
         }
     };
     const auto looked = [&](std::size_t v) { return found.choice[v] == look_choice; };
     const auto density = [&](std::size_t i) {
-        return looked(vertex[i]) && !found.on_grid[vertex[i]] ? found.density[vertex[i]] : nan;
+        return looked(vertex(i)) && !found.on_grid[vertex(i)] ? found.density[vertex(i)] : nan;
     };
     const double factor = told_error_factor(ordered, size, density, {run.threads, {}});
     for (std::size_t v = 0; v < found.error.size(); ++v)

@@ -58,23 +58,29 @@ double told_error_factor(const Elements& elements, double size, const std::funct
                          const Execution& run) {
     const Elements half = every_other(elements);
     const std::size_t runs = half.count <= most_looked_at ? 1 : most_looked_at / run_length;
-    std::vector<double> ratios;
-    std::size_t looked_at = 0;
+    const std::size_t length = runs == 1 ? half.count : run_length;
+    const auto enough = [&](std::size_t compared) {
+        return compared >= least_compared &&
+               static_cast<double>(compared) >= least_part * static_cast<double>(runs * length);
+    };
+    std::vector<double> ratios, whole(length);
+    std::size_t known = runs * length;
     for (std::size_t r = 0; r < runs; ++r) {
         // Runs begin where blocks do.
         const std::size_t first = r * (half.count / runs) / Elements::block * Elements::block;
-        const std::size_t count = runs == 1 ? half.count : run_length;
-        const AutomaticCurvature found = first_looks(half, first, count, size, {run.threads, {}});
-        looked_at += count;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double off = std::abs(found.density[i] - density(2 * (first + i)));
+        for (std::size_t i = 0; i < length; ++i) {
+            whole[i] = density(2 * (first + i));
+            known -= std::isnan(whole[i]) ? 1 : 0;
+        }
+        if (!enough(known)) return 1;  // whatever further looks would find
+        const AutomaticCurvature found = first_looks(half, first, length, size, {run.threads, {}});
+        for (std::size_t i = 0; i < length; ++i) {
+            const double off = std::abs(found.density[i] - whole[i]);
             if (found.choice[i] == look_choice && std::isfinite(off) && found.error[i] > 0)
                 ratios.push_back(off / found.error[i]);
         }
     }
-    if (ratios.size() < least_compared ||
-        static_cast<double>(ratios.size()) < least_part * static_cast<double>(looked_at))
-        return 1;
+    if (!enough(ratios.size())) return 1;
     // Two errors should hold 95 of 100.
     const double off = percentile(ratios, 0.95) / 2;
     return off > no_sign ? 1 : std::clamp(of_half * off, least, most);

@@ -31,15 +31,20 @@ std::vector<std::int32_t> finite_points(Points points) {
 std::vector<std::int32_t> order_of(Points points, const Execution& run) {
     const std::vector<std::int32_t> kept = finite_points(points);
     if (kept.empty() && (points.empty() || finite(load(points[0])))) return spatial_order(points, run);
-    std::vector<double> some(3 * kept.size());
-    for (std::size_t i = 0; i < kept.size(); ++i)
-        store(some.data() + 3 * i, load(points[static_cast<std::size_t>(kept[i])]));
-    std::vector<std::int32_t> order = spatial_order(some, run);
-    for (std::int32_t& index : order) index = kept[static_cast<std::size_t>(index)];
-    return order;
+    return spatial_order_of(points, kept, run);
 }
 
 }  // namespace
+
+std::vector<std::int32_t> spatial_order_of(Points points, const std::vector<std::int32_t>& some, const Execution& run) {
+    if (some.size() == points.count) return spatial_order(points, run);
+    std::vector<double> places(3 * some.size());
+    for (std::size_t i = 0; i < some.size(); ++i)
+        store(places.data() + 3 * i, load(points[static_cast<std::size_t>(some[i])]));
+    std::vector<std::int32_t> order = spatial_order(places, run);
+    for (std::int32_t& index : order) index = some[static_cast<std::size_t>(index)];
+    return order;
+}
 
 SpatialOrder distinct_order(Points points, const Execution& run) {
     check_countable(points);

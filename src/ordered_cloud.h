@@ -22,6 +22,10 @@ struct SpatialOrder {
     std::size_t non_finite = 0;
 };
 
+/// Some finite points along a space-filling curve, by the indices that they have among all.
+/// \param some  each once, in ascending order.
+std::vector<std::int32_t> spatial_order_of(Points points, const std::vector<std::int32_t>& some, const Execution& run);
+
 /// The order depends on the positions alone, neither on copies nor on what is not finite.
 /// \throw std::invalid_argument on more than 2³¹ − 1 points. Time O(n); memory 4 bytes a point, 20 while it works.
 SpatialOrder distinct_order(Points points, const Execution& run);

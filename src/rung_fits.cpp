@@ -54,14 +54,18 @@ Rung RungFits::step(int rung) {
     return found;
 }
 
+std::size_t RungFits::ring_width() const {
+    return window(last_by_rings);
+}
+
 void RungFits::keep_rings() {
-    ring_width_ = window(last_by_rings);
-    rings_.assign(level_.count() * ring_width_, -1);
+    const std::size_t width = ring_width();
+    rings_.assign(level_.count() * width, -1);
     for_blocks(level_.count(), Elements::block, run_, [&](std::size_t, std::size_t a, std::size_t b) {
         const auto on = [&](std::size_t i) { return active_[i] != 0; };
         for (std::size_t end = a; a < b; a = end) {
             for (end = a + 1; end < b && on(end) == on(a);) ++end;
-            if (on(a)) elements_.neighbors(a, end, static_cast<int>(ring_width_), rings_.data() + a * ring_width_);
+            if (on(a)) elements_.neighbors(a, end, static_cast<int>(width), rings_.data() + a * width);
         }
     });
 }
@@ -77,6 +81,7 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
     if (who.empty()) return;
     const std::size_t k = window(rung);
     const bool along_edges = by_rings();
+    const std::size_t width = ring_width();
     std::vector<std::int32_t> rows;
     if (!along_edges) rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
@@ -84,7 +89,7 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
         std::size_t in_lane[fit_lanes];
         for (; a < b; ++a) {
             const std::size_t i = who[a];
-            const std::int32_t* row = along_edges ? rings_.data() + i * ring_width_ : rows.data() + a * k;
+            const std::int32_t* row = along_edges ? rings_.data() + i * width : rows.data() + a * k;
             const Vec3 foot = level_.foot_of(i);
             if (along_edges) windows.add(level_.at(i) - foot);
             for (std::size_t j = 0; j < k && row[j] >= 0; ++j)

@@ -91,6 +91,7 @@ class RungFits {
     std::size_t samples_stride(std::size_t window) const { return (window + most_samples_ - 1) / most_samples_; }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
+    std::size_t ring_width() const;
     void keep_rings();
     void fit(int rung, std::size_t first, std::size_t last, Rung& found);
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
@@ -111,8 +112,7 @@ class RungFits {
     const FamilyFlags& dead_;
     Execution run_;
     NeighborIndex index_;
-    std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width_` neighbours of each element
-    std::size_t ring_width_ = 0;
+    std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width()` neighbours of each element
     /// Level sets of spheres are second derivatives, and ask for every element of a coarser level's window.
     static constexpr std::size_t few_samples = 96, all_samples = 216;
     std::size_t most_samples_;           ///< of an average

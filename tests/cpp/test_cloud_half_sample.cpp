@@ -1,13 +1,13 @@
 // What half of the elements tell of the errors of first looks, against halves made and looked at one by one.
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "../../src/automatic.h"
 #include "../../src/half_sample.h"
 #include "clouds.h"
 #include "gaussmap/neighbors.h"
+#include "nearest_reference.h"
 
 using namespace gaussmap;
 
@@ -26,14 +26,6 @@ support::Cloud along_the_curve(const support::Cloud& cloud) {
     return ordered;
 }
 
-/// The k nearest by their squared distances, the index breaking ties, into a row.
-void keep_nearest(std::vector<std::pair<double, std::int32_t>>& others, int k, std::int32_t* row) {
-    const auto found = std::min(static_cast<std::ptrdiff_t>(others.size()), static_cast<std::ptrdiff_t>(k));
-    std::partial_sort(others.begin(), others.begin() + found, others.end());
-    std::fill_n(row, k, -1);
-    std::transform(others.begin(), others.begin() + found, row, [](const auto& other) { return other.second; });
-}
-
 /// Neighbours by comparing all with all.
 Elements elements_of(const Array& points, bool connected = false) {
     Elements elements;
@@ -41,14 +33,10 @@ Elements elements_of(const Array& points, bool connected = false) {
     elements.connected = connected;
     elements.position = [&points](std::size_t i) { return load(&points[3 * i]); };
     elements.neighbors = [&points](std::size_t first, std::size_t last, int k, std::int32_t* rows) {
-        std::vector<std::pair<double, std::int32_t>> others;
-        for (std::size_t i = first; i < last; ++i, rows += k) {
-            others.clear();
-            for (std::size_t j = 0; j < points.size() / 3; ++j) {
-                const Vec3 d = load(&points[3 * j]) - load(&points[3 * i]);
-                if (j != i) others.emplace_back(dot(d, d), static_cast<std::int32_t>(j));
-            }
-            keep_nearest(others, k, rows);
+        for (std::size_t i = first; i < last; ++i) {
+            const Array here(&points[3 * i], &points[3 * i] + 3);
+            for (const std::int32_t j : support::brute_force(points, here, k + 1).index)
+                if (j != static_cast<std::int32_t>(i)) *rows++ = j;
         }
     };
     return elements;
@@ -169,7 +157,10 @@ TEST(HalfSample, LooksAtSomeOfManyWithAnyNumberOfThreads) {
                     const Vec3 d = sheet.position(static_cast<std::size_t>(j)) - sheet.position(i);
                     if (static_cast<std::size_t>(j) != i) others.emplace_back(dot(d, d), j);
                 }
-            keep_nearest(others, k, rows);
+            std::sort(others.begin(), others.end());
+            std::fill_n(rows, k, -1);
+            for (std::size_t j = 0; j < std::min(others.size(), static_cast<std::size_t>(k)); ++j)
+                rows[j] = others[j].second;
         }
     };
     const AutomaticCurvature whole = automatic_curvature(sheet, 370, {0, {}});
