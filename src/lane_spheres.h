@@ -34,11 +34,15 @@ struct alignas(32) LaneSpheres {
     }
 };
 
-/// Where the chord of a sample is this steep, its sine squared, it is across a tube or a hole, though it may look along
-/// the same line; but not where its square is below that of a tenth of the radius.
-constexpr double overhead = 0.8, near_by = 0.01;
+/// Normals have no side. A sample's is the one that a circle through the place and the sample would have: less than this
+/// much along it, the cosine, it is of something else. Not so within a tenth of the radius, whose square this is, as
+/// noise tilts short chords.
+constexpr double as_expected = 0.5, near_by = 0.01;
+/// Least cosine of the angle between a sample's normal, so turned, and the place's: the far half of a tube bends another
+/// way.
+constexpr double same_half = 0.1;
 
-/// Samples that look elsewhere, are overhead, or are not within the radius, do not count.
+/// Samples whose normals are not so, or that are not within the radius, do not count.
 typedef void LaneSphereKernel(const SphereSample* samples, const LaneBalls& balls, LaneSpheres& spheres);
 extern LaneSphereKernel lane_spheres_baseline;
 extern LaneSphereKernel lane_spheres_avx2;

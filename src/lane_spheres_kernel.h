@@ -30,11 +30,13 @@ struct Term {
 GAUSSMAP_INLINE Term see(const SphereSample* const (&samples)[lanes], const Balls& ball) {
     const Vector its_normal = gather_vector(samples, &SphereSample::normal),
                  d = ball.unit * (gather_vector(samples, &SphereSample::foot) - ball.foot);
-    const Real along = dot(its_normal, ball.n);
-    const Vector normal = select(along < 0, all(-1), all(1)) * its_normal;
-    const Real cosine = dot(normal, ball.n), far = dot(d, d), over = dot(d, ball.n);
-    // Other sheets and far sides look elsewhere. What is not there is NaN, and would stay so with any weight.
-    const Mask seen = (cosine >= one_sheet) & (far < 1) & (over * over < overhead * far + near_by);
+    const Real far = dot(d, d), over = dot(d, ball.n);
+    // The normal of the place, reflected by the plane half way to the sample, is the sample's on any circle through both.
+    const Real expected = dot(its_normal, ball.n) - 2 * over * dot(its_normal, d) / (far + near_by);
+    const Vector normal = select(expected < 0, all(-1), all(1)) * its_normal;
+    const Real cosine = dot(normal, ball.n);
+    // What is not there is NaN, and would stay so with any weight.
+    const Mask seen = (expected * expected >= as_expected * as_expected) & (cosine >= same_half) & (far < 1);
     const auto where_seen = [&](Real value) { return select(seen, value, Real{}); };
     const Real u = where_seen(dot(d, ball.u)), v = where_seen(dot(d, ball.v)), n = where_seen(over);
     const Real normal_u = where_seen(dot(normal, ball.u)), normal_v = where_seen(dot(normal, ball.v)),

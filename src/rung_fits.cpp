@@ -99,10 +99,12 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
                 continue;
             }
             found.half_size[i] = static_cast<float>(length(windows.neighbor(static_cast<int>(k) / 2 - 1)));
-            const std::size_t stride = samples_stride(k);
+            const std::size_t stride = averaged_stride(k);
             std::int32_t* to = samples_.data() + i * most_samples_;
-            for (std::size_t j = 0; j < k; j += stride, ++to)
-                *to = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1;
+            const auto put = [&](std::size_t j) { *to++ = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1; };
+            for (std::size_t j = 0; j < k; j += stride) put(j);
+            for (std::size_t j = 0; j < k && spheres_tried(); ++j)
+                if (j % stride != 0) put(j);
             in_lane[windows.filled()] = i;
             windows.close();
             if (windows.full()) fit_windows(in_lane, rung, windows, found);
@@ -151,7 +153,7 @@ void RungFits::keep(std::size_t i, const WindowFit& fit, Rung& found) {
 }
 
 void RungFits::average(int rung, Rung& found) {
-    const std::size_t k = window(rung), stride = samples_stride(k), count = (k + stride - 1) / stride;
+    const std::size_t k = window(rung), stride = averaged_stride(k), count = (k + stride - 1) / stride;
     const auto& quadric = found.tensor[static_cast<int>(Family::quadric)];
     std::vector<SurfaceSample> samples(level_.count());
     const auto known = [&](std::size_t i) { return active_[i] && std::isfinite(found.size[i]); };
@@ -170,7 +172,7 @@ void RungFits::average(int rung, Rung& found) {
     for_lanes(level_.count(), averaged, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
         average_elements(who, filled, static_cast<int>(count), samples, found);
     });
-    if (families_tried(elements_) > static_cast<int>(Family::sphere)) keep_spheres(static_cast<int>(count), found);
+    if (spheres_tried()) keep_spheres(static_cast<int>(k), found);
 }
 
 /// Quadrics ask for what the slopes tell of borders.

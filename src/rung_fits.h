@@ -76,7 +76,8 @@ class RungFits {
           dead_(dead),
           run_{run.threads, {}},
           index_(Points(level.position), run_),
-          most_samples_(elements.connected || level.members == 1 ? few_samples : all_samples),
+          most_averaged_(elements.connected || level.members == 1 ? few_samples : all_samples),
+          most_samples_(spheres_tried() ? all_samples : most_averaged_),
           samples_(level.count() * most_samples_, -1) {}
 
     /// The finds of a rung, fitted and averaged, at the active elements.
@@ -87,8 +88,9 @@ class RungFits {
     std::size_t window(int rung) const {
         return static_cast<std::size_t>(rung_neighbors(rung) / static_cast<int>(level_.members));
     }
-    /// Of how many in a window one is a sample.
-    std::size_t samples_stride(std::size_t window) const { return (window + most_samples_ - 1) / most_samples_; }
+    /// Of how many in a window averages take one.
+    std::size_t averaged_stride(std::size_t window) const { return (window + most_averaged_ - 1) / most_averaged_; }
+    bool spheres_tried() const { return families_tried(elements_) > static_cast<int>(Family::sphere); }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
     std::size_t ring_width() const;
@@ -113,10 +115,12 @@ class RungFits {
     Execution run_;
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width()` neighbours of each element
-    /// Level sets of spheres are second derivatives, and ask for every element of a coarser level's window.
+    /// Level sets of spheres are second derivatives, and ask for every element of a window; averages for those of a
+    /// coarser level's.
     static constexpr std::size_t few_samples = 96, all_samples = 216;
-    std::size_t most_samples_;           ///< of an average
-    std::vector<std::int32_t> samples_;  ///< `most_samples_` of each element's window, nearest first, −1 for itself
+    std::size_t most_averaged_, most_samples_;
+    /// `most_samples_` of each element's window, −1 for itself: those of averages, nearest first, then the others.
+    std::vector<std::int32_t> samples_;
 };
 
 }  // namespace gaussmap

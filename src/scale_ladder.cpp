@@ -60,7 +60,7 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.6, 2},
 /// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².
 double uneven_variance(const Symmetric3& shape, int samples) {
-    constexpr double part = 0.2;
+    constexpr double part = 0.1;
     const double density = squared_norm(shape), sum = shape.xx + shape.yy + shape.zz;
     return part * 4 * density * std::max(0.0, density - 0.5 * sum * sum) / samples;
 }

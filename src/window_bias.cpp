@@ -22,6 +22,9 @@ namespace {
 constexpr int of_quadrics = 60, of_quartics = 120;
 /// What is missing, squared, relative to what goes at second sight.
 constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F, missing_of_spheres = 11;
+/// Along a tube the density hardly varies, and twicing tells nothing. So as much of the squared error counts anyway as
+/// it is of this many times the squared density: where windows are as wide as the shape, much.
+constexpr float of_squared_density = 1.2F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
@@ -76,8 +79,14 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
         if (wanted[i] == 0 || !std::isfinite(bias[i])) continue;
         const float noise = measured.noise[i], told = std::max(0.0F, measured.error[i] - noise),
                     more = std::max(0.0F, bias[i] - missing_of_noise * noise);
-        // Of spheres the geometric mean, in which what the next rung changes counts three times.
-        measured.error[i] = noise + (of_spheres(i) ? std::sqrt(told * std::sqrt(told * more)) : told + more);
+        if (!of_spheres(i)) {
+            measured.error[i] = noise + told + more;
+            continue;
+        }
+        // The geometric mean, in which what the next rung changes counts three times.
+        const auto density = static_cast<float>(measured.density[i]);
+        const float anyway = std::min(1.0F, told / (of_squared_density * density * density));
+        measured.error[i] = noise + std::max(std::sqrt(told * std::sqrt(told * more)), anyway * told);
     }
 }
 

@@ -58,10 +58,11 @@ SphereSums sums_about(const std::vector<Place>& surface, std::size_t i, const st
     sums.add({0, 0, 0}, surface[i].normal, double(weight[i]));
     for (const std::size_t j : row) {
         const Vec3 d = 1 / radius * (surface[j].foot - surface[i].foot);
-        const double along = dot(surface[j].normal, surface[i].normal), over = dot(d, surface[i].normal);
-        if (!(std::abs(along) >= one_sheet) || !(squared(d) < 1)) continue;
-        if (!(over * over < overhead * squared(d) + near_by)) continue;
-        sums.add(d, (along < 0 ? -1.0 : 1.0) * surface[j].normal, double(weight[j]));
+        const Vec3 own = surface[i].normal, reflected = own - (2 * dot(d, own) / (squared(d) + near_by)) * d;
+        const double expected = dot(surface[j].normal, reflected);
+        const Vec3 normal = (expected < 0 ? -1.0 : 1.0) * surface[j].normal;
+        if (!(std::abs(expected) >= as_expected) || !(dot(normal, own) >= same_half) || !(squared(d) < 1)) continue;
+        sums.add(d, normal, double(weight[j]));
     }
     return sums;
 }
