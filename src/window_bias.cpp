@@ -24,7 +24,7 @@ constexpr int of_quadrics = 60, of_quartics = 120;
 constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F, missing_of_spheres = 11;
 /// Along a tube the density hardly varies, and twicing tells nothing. So as much of the squared error counts anyway as
 /// it is of this many times the squared density: where windows are as wide as the shape, much.
-constexpr float of_squared_density = 1.2F;
+constexpr float of_squared_density = 0.6F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.

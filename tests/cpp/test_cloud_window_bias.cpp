@@ -65,8 +65,14 @@ TEST(WindowBias, IsNothingWhereTheDensityIsOneValue) {
     for (const Family family : {Family::mean, Family::quartic}) {
         for (const float more : added(1, family, 0.001F, 0.0005F)) EXPECT_NEAR(more, 0, 1e-9);
     }
-    // Of spheres then nothing is left but noise, as what the next rung changes is none of a shape.
-    for (const float more : added(1, Family::sphere, 0.001F, 0.0004F)) EXPECT_NEAR(more, -0.0006F, 1e-9);
+}
+
+TEST(WindowBias, OfSpheresCountsAsItIsLargeForTheDensityWhereThatIsOneValue) {
+    // Told is 0.6 of a squared density of 4 at which all counts: 0.0006 is 1 / 4000 of it, 0.6 a quarter, 6 more.
+    for (const float more : added(1, Family::sphere, 0.001F, 0.0004F))
+        EXPECT_NEAR(more, -0.0006 * (1 - 0.0006 / 2.4), 1e-9);
+    for (const float more : added(1, Family::sphere, 1, 0.4F)) EXPECT_NEAR(more, -0.6 * (1 - 0.25), 1e-6);
+    for (const float more : added(1, Family::sphere, 6.4F, 0.4F)) EXPECT_NEAR(more, 0, 1e-6);
 }
 
 TEST(WindowBias, OfQuarticsIsWhatTheirWindowTakesAwayTwice) {
