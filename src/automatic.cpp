@@ -35,6 +35,9 @@ constexpr double noise_part = 0.25, weak = 0.003, noise_part_where_weak = 0.9;
 /// (relative variances, at most 1) are those of a shape too thin for its sampling, and where they scatter so many times
 /// more there is detail that noise hardly touches.
 constexpr double scatter_part = 0.3, detail_part = 20;
+/// Noise in which densities of quartics drown makes those of quadrics scatter as well (variance of logarithms, at least
+/// 0.4); on tubes that are just sampled well enough quadrics, not quartics, are sure (at most 0.008).
+constexpr double drowned = 0.9, drowned_scatter = 0.1;
 /// Noise scatters the residuals themselves, too; less than this (variance of logarithms, at least 0.04 under noise)
 /// comes of a grid, whose remainders are alike from one point to the next, and grow slowly beside a border.
 constexpr double random_scatter = 0.02;
@@ -51,6 +54,7 @@ struct Looks {
     std::vector<float> error[fits];                  ///< squared, told by them
     std::vector<float> residual, wide_residual, variance, trace;
     std::vector<float> scatter;           ///< of the logarithm of the density among neighbours
+    std::vector<float> quadric_scatter;   ///< the same of the quadric
     std::vector<float> residual_scatter;  ///< and of that of the residual
     std::vector<float> expected;          ///< squared relative error that noise would make, at most 1
 
@@ -60,6 +64,7 @@ struct Looks {
           variance(residual),
           trace(residual),
           scatter(residual),
+          quadric_scatter(residual),
           residual_scatter(residual),
           expected(residual) {
         for (int f = 0; f < fits; ++f) fit[f].resize(count), change[f] = widened[f] = error[f] = residual;
@@ -88,6 +93,7 @@ void keep(const FirstLook& look, std::size_t i, Looks& looks) {
         return static_cast<float>(std::log(value + std::numeric_limits<float>::min()));
     };
     looks.scatter[i] = logarithm(look.chord.density);
+    looks.quadric_scatter[i] = logarithm(look.quadric.density);
     looks.residual_scatter[i] = logarithm(look.residual);
 }
 
@@ -174,7 +180,7 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
     for (const std::size_t n : lowered) result.lowered += n;
 
     const ElementGraph& graph = result.graph;
-    for (std::vector<float>* scatter : {&looks.scatter, &looks.residual_scatter}) {
+    for (std::vector<float>* scatter : {&looks.scatter, &looks.quadric_scatter, &looks.residual_scatter}) {
         // Of the deviations from the neighbours' mean, so that the slope and bend of what is smooth do not pass for
         // noise.
         std::vector<float> smooth = *scatter;
@@ -182,7 +188,8 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
         for (std::size_t i = 0; i < tile.count; ++i) (*scatter)[i] -= smooth[i];
         *scatter = roughness(*scatter, graph, run);
     }
-    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter, &looks.residual_scatter}, graph, noise_reach, run);
+    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter, &looks.quadric_scatter, &looks.residual_scatter},
+            graph, noise_reach, run);
     for (std::size_t i = 0; i < tile.count; ++i) {
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
@@ -221,7 +228,7 @@ bool is_noisy(const Looks& looks, std::size_t i) {
     const double part = looks.expected[i] < weak * weak ? noise_part_where_weak : noise_part;
     return noise > part * looks.residual[i] && looks.expected[i] > negligible * negligible &&
            looks.scatter[i] > scatter_part * looks.expected[i] && looks.scatter[i] < detail_part * looks.expected[i] &&
-           !on_grid(looks, i);
+           (looks.expected[i] < drowned || looks.quadric_scatter[i] > drowned_scatter) && !on_grid(looks, i);
 }
 
 /// Where the ladder is needed.
