@@ -37,11 +37,11 @@ JETS = {
 }
 PCL = {"clean": "10 15 20 30 50", "noisy": "20 50 100 200 300"}
 APSS = {
-    "clean": "10:2 20:2 20:4",
-    "n0.1": "50:5 50:7 50:9",
-    "n0.2": "50:6 50:9 50:12",
-    "n0.5": "50:8 50:12 100:16",
-    "n1": "50:12 100:16 100:20",
+    "clean": "10:2 10:3 10:4 20:4",
+    "n0.1": "50:7 50:9 50:12 100:16 100:20",
+    "n0.2": "50:6 50:9 50:12 100:16 100:20",
+    "n0.5": "50:8 50:12 100:16 200:20 200:24",
+    "n1": "50:12 100:16 100:20 200:20 200:24",
 }
 RINGS = {"clean": "2 3 4 5", "n0.5": "2 3 4 5 6", "n1": "3 4 5 6 8", "n2": "4 5 6 8 10"}  # 5 is libigl's own
 
@@ -138,7 +138,7 @@ class Bench:
         grid = "clean" if clean else sampling
         pcl = SOURCE / "cloud_curvature/pcl_curvatures.cpp"
         apss = SOURCE / "cloud_curvature/meshlab_apss.py"
-        part = str(QUICK_JUDGED // 4 if self.quick else QUICK_JUDGED)  # all of them take APSS many minutes a file
+        part = str(QUICK_JUDGED)  # all of them take APSS many minutes a file
         rows = self.jets(file, JETS[grid])
         rows += self.rows(pcl, [self.folder / "pcl_curvatures"], file, ["0", *PCL["clean" if clean else "noisy"].split()])
         return rows + self.rows(apss, [self.python, apss], file, [part, *APSS[grid].split()])
