@@ -34,12 +34,12 @@ struct alignas(32) LaneSpheres {
     }
 };
 
-/// Normals have no side. A sample's is the one that a circle through the place and the sample would have: less than this
-/// much along it, the cosine, it is of something else. Not so within a tenth of the radius, whose square this is, as
-/// noise tilts short chords.
+/// Normals have no side. A sample's is the one that a circle through the place and the sample would have: less than
+/// this much along it, the cosine, it is of something else. Not so within a tenth of the radius, whose square this is,
+/// as noise tilts short chords.
 constexpr double as_expected = 0.5, near_by = 0.01;
-/// Least cosine of the angle between a sample's normal, so turned, and the place's: the far half of a tube bends another
-/// way.
+/// Least cosine of the angle between a sample's normal, so turned, and the place's: the far half of a tube bends
+/// another way.
 constexpr double same_half = 0.1;
 
 /// Samples whose normals are not so, or that are not within the radius, do not count.

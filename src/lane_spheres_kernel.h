@@ -31,7 +31,8 @@ GAUSSMAP_INLINE Term see(const SphereSample* const (&samples)[lanes], const Ball
     const Vector its_normal = gather_vector(samples, &SphereSample::normal),
                  d = ball.unit * (gather_vector(samples, &SphereSample::foot) - ball.foot);
     const Real far = dot(d, d), over = dot(d, ball.n);
-    // The normal of the place, reflected by the plane half way to the sample, is the sample's on any circle through both.
+    // The normal of the place, reflected by the plane half way to the sample, is the sample's on any circle through
+    // both.
     const Real expected = dot(its_normal, ball.n) - 2 * over * dot(its_normal, d) / (far + near_by);
     const Vector normal = select(expected < 0, all(-1), all(1)) * its_normal;
     const Real cosine = dot(normal, ball.n);

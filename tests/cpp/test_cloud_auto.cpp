@@ -205,8 +205,8 @@ TEST(CloudAuto, NoisyTorus) {
 }
 
 TEST(CloudAuto, ThinTubesAreNotTakenForNoisy) {
-    // Quartics over 24 points scatter here as under noise; quadrics over nine do not. On the ladder all of a strand would
-    // pass for one noisy sheet of hardly any curvature.
+    // Quartics over 24 points scatter here as under noise; quadrics over nine do not. On the ladder all of a strand
+    // would pass for one noisy sheet of hardly any curvature.
     const Surface knot = torus_knot(3, 5, 1, 0.5, 0.09, 900, 40);
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         SamplingOptions options;

@@ -172,8 +172,8 @@ std::vector<SphereSample> samples_about_the_pole(Random& random) {
     samples[3] = {};                                                            // nothing is known there
     samples[4].normal[0] = 1, samples[4].normal[1] = samples[4].normal[2] = 0;  // upright
     for (double& x : samples[5].foot) x += 1;                                   // far away
-    samples[6] = {{0, 0, -1}, {0.1, 0, 0.6}, 1};       // across
-    samples[10] = {{0, 0, 1}, {0.02, 0.03, 1.04}, 1};  // overhead, but near by
+    samples[6] = {{0, 0, -1}, {0.1, 0, 0.6}, 1};                                // across
+    samples[10] = {{0, 0, 1}, {0.02, 0.03, 1.04}, 1};                           // overhead, but near by
     return samples;
 }
 
