@@ -24,7 +24,10 @@ constexpr int of_quadrics = 60, of_quartics = 120;
 constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F, missing_of_spheres = 11;
 /// Along a tube the density hardly varies, and twicing tells nothing. So as much of the squared error counts anyway as
 /// it is of this many times the squared density: where windows are as wide as the shape, much.
-constexpr float of_squared_density = 0.6F;
+constexpr float of_squared_density = 0.25F;
+/// Spheres of several scales are about as good, and their mix errs less than the best of them, which the error told is
+/// of: squared, by this factor.
+constexpr float of_mixed_spheres = 0.7F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
@@ -86,7 +89,8 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
         // The geometric mean, in which what the next rung changes counts three times.
         const auto density = static_cast<float>(measured.density[i]);
         const float anyway = std::min(1.0F, told / (of_squared_density * density * density));
-        measured.error[i] = noise + std::max(std::sqrt(told * std::sqrt(told * more)), anyway * told);
+        const float bias_told = std::max(std::sqrt(told * std::sqrt(told * more)), anyway * told);
+        measured.error[i] = of_mixed_spheres * (noise + bias_told);
     }
 }
 

@@ -68,11 +68,12 @@ TEST(WindowBias, IsNothingWhereTheDensityIsOneValue) {
 }
 
 TEST(WindowBias, OfSpheresCountsAsItIsLargeForTheDensityWhereThatIsOneValue) {
-    // Told is 0.6 of a squared density of 4 at which all counts: 0.0006 is 1 / 4000 of it, 0.6 a quarter, 6 more.
+    // All counts where what is told is a quarter of the squared density, 4; then 0.7 of it and the noise is left.
     for (const float more : added(1, Family::sphere, 0.001F, 0.0004F))
-        EXPECT_NEAR(more, -0.0006 * (1 - 0.0006 / 2.4), 1e-9);
-    for (const float more : added(1, Family::sphere, 1, 0.4F)) EXPECT_NEAR(more, -0.6 * (1 - 0.25), 1e-6);
-    for (const float more : added(1, Family::sphere, 6.4F, 0.4F)) EXPECT_NEAR(more, 0, 1e-6);
+        EXPECT_NEAR(more, 0.7 * (0.0004 + 0.0006 * 0.0006) - 0.001, 1e-9);
+    for (const float more : added(1, Family::sphere, 0.65F, 0.4F))
+        EXPECT_NEAR(more, 0.7 * (0.4 + 0.25 * 0.25) - 0.65, 1e-6);
+    for (const float more : added(1, Family::sphere, 2.4F, 0.4F)) EXPECT_NEAR(more, 0.7 * (0.4 + 2) - 2.4, 1e-6);
 }
 
 TEST(WindowBias, OfQuarticsIsWhatTheirWindowTakesAwayTwice) {
@@ -92,7 +93,7 @@ TEST(WindowBias, OfSpheresIsTheMeanOfTwoTellings) {
     const float told = 0.003F;
     const std::vector<float> of_mean = added(24, Family::mean, told, 0), of_sphere = added(24, Family::sphere, told, 0);
     for (std::size_t i = 0; i < count; ++i)
-        EXPECT_NEAR(told + of_sphere[i], std::pow(told * told * told * 2.2F * of_mean[i], 0.25F), 1e-5F) << i;
+        EXPECT_NEAR(told + of_sphere[i], 0.7F * std::pow(told * told * told * 2.2F * of_mean[i], 0.25F), 1e-5F) << i;
 }
 
 TEST(WindowBias, DoesNotCountWhatNoiseShows) {
