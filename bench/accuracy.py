@@ -2,8 +2,9 @@
 
 A cell is a surface with a sampling (clouds) or a kind (meshes), written by BUILD/bench/surfaces; the measure is the
 relative RMSE of the density, RMSE / RMS(truth), the mean over the seeds (three; --quick: one). Each peer runs over a
-grid of its parameters and is judged by the truth: first on a part of the points, then its two best settings on all
-(--quick: on a larger part). The best of them all is what our defaults, which do not know the truth, are compared with.
+grid of its parameters and is judged by the truth: CGAL's jets first on a few of the points, then their two best settings
+on all (--quick: on a larger part, as MeshLab's APSS always is). The best of them all is what our defaults, which do not
+know the truth, are compared with.
 
 Prints the tables and writes them to BUILD/bench/accuracy.md, every row of every peer to BUILD/bench/accuracy.csv.
 Rows of peers are kept in BUILD/bench/peers and made again when the peer's program or its parameters change.
@@ -38,9 +39,9 @@ JETS = {
 PCL = {"clean": "10 15 20 30 50", "noisy": "20 50 100 200 300"}
 APSS = {
     "clean": "10:2 10:3 10:4 20:4",
-    "n0.1": "50:7 50:9 50:12 100:16 100:20",
-    "n0.2": "50:6 50:9 50:12 100:16 100:20",
-    "n0.5": "50:8 50:12 100:16 200:20 200:24",
+    "n0.1": "50:7 50:9 50:12 50:16 100:16 100:20",
+    "n0.2": "50:6 50:9 50:12 50:16 100:12 100:16 100:20",
+    "n0.5": "50:8 50:12 100:16 100:20 200:20 200:24",
     "n1": "50:12 100:16 100:20 200:20 200:24",
 }
 RINGS = {"clean": "2 3 4 5", "n0.5": "2 3 4 5 6", "n1": "3 4 5 6 8", "n2": "4 5 6 8 10"}  # 5 is libigl's own
@@ -64,7 +65,7 @@ OUR_MESHES = {
     "loop, true normals": ["--normals", "file", "--estimator", "dirichlet"],
     "corrected, true normals": ["--normals", "file", "--estimator", "corrected"],
 }
-SCREEN, QUICK_JUDGED = 400, 2500  # points
+SCREEN, PART = 400, 2500  # points
 
 
 class Row:
@@ -130,7 +131,7 @@ class Bench:
         command = [self.folder / "cgal_jets"]
         screened = self.rows(source, command, file, [str(SCREEN), *grid.split()])
         settings = best_jets(screened)
-        judged = str(QUICK_JUDGED if self.quick else 0)
+        judged = str(PART if self.quick else 0)
         return self.rows(source, command, file, [judged, *settings]) if settings else []
 
     def cloud_peers(self, file, sampling):
@@ -138,10 +139,10 @@ class Bench:
         grid = "clean" if clean else sampling
         pcl = SOURCE / "cloud_curvature/pcl_curvatures.cpp"
         apss = SOURCE / "cloud_curvature/meshlab_apss.py"
-        part = str(QUICK_JUDGED)  # all of them take APSS many minutes a file
         rows = self.jets(file, JETS[grid])
         rows += self.rows(pcl, [self.folder / "pcl_curvatures"], file, ["0", *PCL["clean" if clean else "noisy"].split()])
-        return rows + self.rows(apss, [self.python, apss], file, [part, *APSS[grid].split()])
+        # All of the points take APSS many minutes a file.
+        return rows + self.rows(apss, [self.python, apss], file, [str(PART), *APSS[grid].split()])
 
     def mesh_peers(self, file, kind):
         peers = SOURCE / "mesh_curvature/peers.py"
@@ -321,7 +322,7 @@ def write_rows(path, cells):
 def main():
     line = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     line.add_argument("build", type=Path)
-    line.add_argument("--quick", action="store_true", help="one seed, fewer points of the slow peers")
+    line.add_argument("--quick", action="store_true", help="one seed, fewer points of CGAL's jets")
     line.add_argument("--only", default="", help="surfaces whose name contains this")
     line.add_argument("--kinds", default="clouds,meshes")
     options = line.parse_args()

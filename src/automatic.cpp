@@ -54,7 +54,7 @@ struct Looks {
     std::vector<float> error[fits];                  ///< squared, told by them
     std::vector<float> residual, wide_residual, variance, trace;
     std::vector<float> scatter;           ///< of the logarithm of the density among neighbours
-    std::vector<float> quadric_scatter;   ///< the same of the quadric
+    std::vector<float> quadric_scatter;   ///< the same of the quadric, found where quartics drown
     std::vector<float> residual_scatter;  ///< and of that of the residual
     std::vector<float> expected;          ///< squared relative error that noise would make, at most 1
 
@@ -115,6 +115,15 @@ void tell_errors(Looks& looks, const ElementGraph& graph, const Execution& run) 
         looks.error[quartics][i] = static_cast<float>(of_quadric * of_quadric * looks.change[quartics][i]);
     }
     diffuse({&looks.error[0], &looks.error[1], &looks.error[2]}, graph, error_reach, run);
+}
+
+/// How logarithms scatter among neighbours, in their place: by their deviations from the neighbours' mean, so that the
+/// slope and bend of what is smooth do not pass for noise.
+void scatter_of(std::vector<float>& logarithms, const ElementGraph& graph, const Execution& run) {
+    std::vector<float> smooth = logarithms;
+    diffuse(smooth, graph, 1, run);
+    for (std::size_t i = 0; i < logarithms.size(); ++i) logarithms[i] -= smooth[i];
+    logarithms = roughness(logarithms, graph, run);
 }
 
 /// The neighbours of an element, put into a lane; how many there are.
@@ -180,21 +189,19 @@ Looks look_around(const Elements& elements, const Tile& tile, double scale, Auto
     for (const std::size_t n : lowered) result.lowered += n;
 
     const ElementGraph& graph = result.graph;
-    for (std::vector<float>* scatter : {&looks.scatter, &looks.quadric_scatter, &looks.residual_scatter}) {
-        // Of the deviations from the neighbours' mean, so that the slope and bend of what is smooth do not pass for
-        // noise.
-        std::vector<float> smooth = *scatter;
-        diffuse(smooth, graph, 1, run);
-        for (std::size_t i = 0; i < tile.count; ++i) (*scatter)[i] -= smooth[i];
-        *scatter = roughness(*scatter, graph, run);
-    }
-    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter, &looks.quadric_scatter, &looks.residual_scatter},
-            graph, noise_reach, run);
+    scatter_of(looks.scatter, graph, run);
+    scatter_of(looks.residual_scatter, graph, run);
+    diffuse({&looks.residual, &looks.wide_residual, &looks.scatter, &looks.residual_scatter}, graph, noise_reach, run);
     for (std::size_t i = 0; i < tile.count; ++i) {
         const double density = looks.fit[0][i].density;
         looks.expected[i] = static_cast<float>(std::min(1.0, noise_error(looks, i) / (density * density)));
     }
     diffuse(looks.expected, graph, noise_reach, run);
+    // Only where quartics are expected to drown are quadrics asked.
+    if (std::any_of(looks.expected.begin(), looks.expected.end(), [](float part) { return part >= drowned; })) {
+        scatter_of(looks.quadric_scatter, graph, run);
+        diffuse(looks.quadric_scatter, graph, noise_reach, run);
+    }
     tell_errors(looks, graph, run);
     return looks;
 }

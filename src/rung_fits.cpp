@@ -103,7 +103,7 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
             std::int32_t* to = samples_.data() + i * most_samples_;
             const auto put = [&](std::size_t j) { *to++ = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1; };
             for (std::size_t j = 0; j < k; j += stride) put(j);
-            for (std::size_t j = 0; j < k && spheres_tried(); ++j)
+            for (std::size_t j = 0; j < k && most_samples_ > most_averaged_; ++j)
                 if (j % stride != 0) put(j);
             in_lane[windows.filled()] = i;
             windows.close();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "../../src/rung_fits.h"
+#include "sphere_reference.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -58,11 +59,7 @@ SphereSums sums_about(const std::vector<Place>& surface, std::size_t i, const st
     sums.add({0, 0, 0}, surface[i].normal, double(weight[i]));
     for (const std::size_t j : row) {
         const Vec3 d = 1 / radius * (surface[j].foot - surface[i].foot);
-        const Vec3 own = surface[i].normal, reflected = own - (2 * dot(d, own) / (squared(d) + near_by)) * d;
-        const double expected = dot(surface[j].normal, reflected);
-        const Vec3 normal = (expected < 0 ? -1.0 : 1.0) * surface[j].normal;
-        if (!(std::abs(expected) >= as_expected) || !(dot(normal, own) >= same_half) || !(squared(d) < 1)) continue;
-        sums.add(d, normal, double(weight[j]));
+        support::add_if_seen(sums, d, surface[j].normal, surface[i].normal, double(weight[j]));
     }
     return sums;
 }
