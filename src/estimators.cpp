@@ -29,7 +29,8 @@ const char* choice_name(std::uint8_t choice) {
         std::vector<std::string> list(first_rung_choice + most_rungs * families);
         list[0] = "none", list[1] = "quadric 9", list[2] = "quartic 24", list[3] = "corrected";
         constexpr const char* family_names[families] = {
-            "quadric ", "half mean quadric ", "mean quadric ", "half slope ", "slope ", "quartic free ", "sphere "};
+            "quadric ", "half mean quadric ", "mean quadric ",       "half slope ", "slope ", "quartic free ",
+            "sphere ",  "fine sphere ",       "extrapolated sphere "};
         for (int rung = 0; rung < most_rungs; ++rung)
             for (int family = 0; family < families; ++family)
                 list[rung_choice(rung, static_cast<Family>(family))] =

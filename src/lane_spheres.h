@@ -17,9 +17,18 @@ struct alignas(64) SphereSample {
     static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Normals have no side. A sample's is the one that a circle through the place and the sample would have: less than
+/// this much along it, the cosine, it is of something else. Not so within a tenth of the radius, whose square this is,
+/// as noise tilts short chords.
+constexpr double as_expected = 0.5, near_by = 0.01;
+/// Least cosine of the angle between a sample's normal, so turned, and the place's: the far half of a tube bends
+/// another way.
+constexpr double same_half = 0.1;
+
 /// Four places, and how far about them samples are taken in.
 struct alignas(32) LaneBalls : LaneFrames {
     LaneValues radius = {};
+    double least_expected = as_expected, least_cosine = same_half;
 };
 
 /// Places and normals in the frame, the former in units of the radius.
@@ -33,14 +42,6 @@ struct alignas(32) LaneSpheres {
         return of;
     }
 };
-
-/// Normals have no side. A sample's is the one that a circle through the place and the sample would have: less than
-/// this much along it, the cosine, it is of something else. Not so within a tenth of the radius, whose square this is,
-/// as noise tilts short chords.
-constexpr double as_expected = 0.5, near_by = 0.01;
-/// Least cosine of the angle between a sample's normal, so turned, and the place's: the far half of a tube bends
-/// another way.
-constexpr double same_half = 0.1;
 
 /// Samples whose normals are not so, or that are not within the radius, do not count.
 typedef void LaneSphereKernel(const SphereSample* samples, const LaneBalls& balls, LaneSpheres& spheres);

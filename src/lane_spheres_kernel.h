@@ -12,14 +12,16 @@ namespace {
 /// Some lanes of the balls.
 struct Balls {
     Vector u, v, n, foot;
-    Real unit;
+    Real unit, least_square, least_cosine;
 
     GAUSSMAP_INLINE Balls(const LaneBalls& from, int lane)
         : u(load(from.axis[0], lane)),
           v(load(from.axis[1], lane)),
           n(load(from.axis[2], lane)),
           foot(load(from.foot, lane)),
-          unit(1 / load(&from.radius[lane])) {}
+          unit(1 / load(&from.radius[lane])),
+          least_square(all(from.least_expected * from.least_expected)),
+          least_cosine(all(from.least_cosine)) {}
 };
 
 /// What a sample's place and normal come to in the sums.
@@ -37,7 +39,7 @@ GAUSSMAP_INLINE Term see(const SphereSample* const (&samples)[lanes], const Ball
     const Vector normal = select(expected < 0, all(-1), all(1)) * its_normal;
     const Real cosine = dot(normal, ball.n);
     // What is not there is NaN, and would stay so with any weight.
-    const Mask seen = (expected * expected >= as_expected * as_expected) & (cosine >= same_half) & (far < 1);
+    const Mask seen = (expected * expected >= ball.least_square) & (cosine >= ball.least_cosine) & (far < 1);
     const auto where_seen = [&](Real value) { return select(seen, value, Real{}); };
     const Real u = where_seen(dot(d, ball.u)), v = where_seen(dot(d, ball.v)), n = where_seen(over);
     const Real normal_u = where_seen(dot(normal, ball.u)), normal_v = where_seen(dot(normal, ball.v)),

@@ -47,7 +47,9 @@ GAUSSMAP_INLINE void pick(const Sample* samples, const Sample& nothing, const La
                           const Sample* (&picked)[lanes]) {
     for (int l = 0; l < lanes; ++l) {
         const std::int32_t* const from = about.samples[lane + l];
-        picked[l] = number < about.count && from != nullptr && from[number] >= 0 ? samples + from[number] : &nothing;
+        picked[l] = number < about.count && from != nullptr && from[number * about.stride] >= 0
+                        ? samples + from[number * about.stride]
+                        : &nothing;
     }
 }
 

@@ -20,10 +20,6 @@ constexpr int last_by_rings = 6;
 LaneAverageKernel* best_lane_averages() {
     return GAUSSMAP_FASTEST(lane_averages);
 }
-LaneSphereKernel* best_lane_spheres() {
-    return GAUSSMAP_FASTEST(lane_spheres);
-}
-
 /// Call body(who, filled) with the elements that are known, a lane each.
 template <class Known, class Body>
 void for_lanes(std::size_t count, Known&& known, const Execution& run, Body&& body) {
@@ -81,15 +77,16 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
     if (who.empty()) return;
     const std::size_t k = window(rung);
     const bool along_edges = by_rings();
-    const std::size_t width = ring_width();
+    const std::size_t width = along_edges ? ring_width() : std::min(reach(k), level_.count());
+    const std::size_t stride = spheres_tried() ? 1 : averaged_stride(k), seen = spheres_tried() ? width : k;
     std::vector<std::int32_t> rows;
-    if (!along_edges) rows = index_.nearest(Points(feet), static_cast<int>(k), false, run_).index;
+    if (!along_edges) rows = index_.nearest(Points(feet), static_cast<int>(width), false, run_).index;
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
         WindowFits windows(static_cast<int>(k) + 1);
         std::size_t in_lane[fit_lanes];
         for (; a < b; ++a) {
             const std::size_t i = who[a];
-            const std::int32_t* row = along_edges ? rings_.data() + i * width : rows.data() + a * k;
+            const std::int32_t* row = along_edges ? rings_.data() + i * width : rows.data() + a * width;
             const Vec3 foot = level_.foot_of(i);
             if (along_edges) windows.add(level_.at(i) - foot);
             for (std::size_t j = 0; j < k && row[j] >= 0; ++j)
@@ -99,12 +96,8 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
                 continue;
             }
             found.half_size[i] = static_cast<float>(length(windows.neighbor(static_cast<int>(k) / 2 - 1)));
-            const std::size_t stride = averaged_stride(k);
             std::int32_t* to = samples_.data() + i * most_samples_;
-            const auto put = [&](std::size_t j) { *to++ = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1; };
-            for (std::size_t j = 0; j < k; j += stride) put(j);
-            for (std::size_t j = 0; j < k && most_samples_ > most_averaged_; ++j)
-                if (j % stride != 0) put(j);
+            for (std::size_t j = 0; j < seen; j += stride) *to++ = row[j] != static_cast<std::int32_t>(i) ? row[j] : -1;
             in_lane[windows.filled()] = i;
             windows.close();
             if (windows.full()) fit_windows(in_lane, rung, windows, found);
@@ -170,9 +163,13 @@ void RungFits::average(int rung, Rung& found) {
     });
     const auto averaged = [&](std::size_t i) { return known(i) && averages_wanted(i); };
     for_lanes(level_.count(), averaged, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
-        average_elements(who, filled, static_cast<int>(count), samples, found);
+        average_elements(who, filled, static_cast<int>(count), spheres_tried() ? static_cast<int>(stride) : 1, samples,
+                         found);
     });
-    if (spheres_tried()) keep_spheres(static_cast<int>(k), found);
+    if (!spheres_tried()) return;
+    keep_spheres(static_cast<int>(k), found);
+    if (rung >= FineSurface::rungs_below) keep_fine_spheres(rung, found);
+    fine_.keep(rung, level_, active_, found);
 }
 
 /// Quadrics ask for what the slopes tell of borders.
@@ -183,10 +180,11 @@ bool RungFits::averages_wanted(std::size_t i) const {
 }
 
 /// Over the samples within half the neighbours' reach and within all of it.
-void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
+void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled, int count, int stride,
                                 const std::vector<SurfaceSample>& samples, Rung& found) {
     LaneCentres centres;
     centres.count = count;
+    centres.stride = stride;
     for (int l = 0; l < filled; ++l) {
         const std::size_t i = who[l];
         const double half = double(found.half_size[i]), whole = double(found.size[i]);
@@ -201,31 +199,20 @@ void RungFits::average_elements(const std::size_t (&who)[fit_lanes], int filled,
 }
 
 /// The level sets of spheres through the places of a surface, over the windows of the rung.
-/// \param keep  called with an element, the frame about its normal, the mean place of the samples, in units of the
-///              window, and the level set, in the frame and the same units.
+/// \param keep  called with an element and its level set.
 template <class Keep>
 void RungFits::find_level_sets(int count, const Surface& surface, const Rung& found, Keep&& keep) const {
-    constexpr Vec3 up = {0, 0, 1};
     const auto known = [&](std::size_t i) { return surface[i].weight > 0; };
     for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
-        LaneBalls balls;
-        balls.count = count;
-        Frame frames[fit_lanes];
+        SphereWindow windows[fit_lanes];
         for (int l = 0; l < filled; ++l) {
-            const SphereSample& own = surface[who[l]];
-            frames[l] = frame_about(load(own.normal));
-            balls.set(l, frames[l], load(own.foot));
-            balls.radius[l] = double(found.size[who[l]]);
-            balls.samples[l] = samples_.data() + who[l] * most_samples_;
+            const std::size_t i = who[l];
+            windows[l] = {&surface[i], samples_.data() + i * most_samples_, double(found.size[i])};
         }
-        LaneSpheres spheres;
-        best_lane_spheres()(surface.data(), balls, spheres);
-        for (int l = 0; l < filled; ++l) {
-            SphereSums sums = spheres.sums(l);
-            sums.add({0, 0, 0}, up, surface[who[l]].weight);
-            const LevelSet level_set = sums.level_set();
-            if (level_set.normal.z > one_sheet) keep(who[l], frames[l], sums.middle(), level_set);
-        }
+        PlacedLevelSet level_sets[fit_lanes];
+        gaussmap::find_level_sets(surface, windows, filled, count, Count::of_one_half, level_sets);
+        for (int l = 0; l < filled; ++l)
+            if (level_sets[l].found) keep(who[l], level_sets[l]);
     });
 }
 
@@ -243,20 +230,47 @@ void RungFits::keep_spheres(int count, Rung& found) const {
         quadrics[i].weight = double(level_.area[i]);
     }
     Surface spheres = quadrics;
-    find_level_sets(count, quadrics, found,
-                    [&](std::size_t i, const Frame& frame, Vec3 middle, const LevelSet& level_set) {
-                        if (std::hypot(middle.x, middle.y) > one_sided || std::abs(level_set.height) > far) return;
-                        const Vec3 n = level_set.normal, normal = n.x * frame.u + n.y * frame.v + n.z * frame.n;
-                        const double height = double(found.size[i]) * level_set.height;
-                        store(spheres[i].normal, normal);
-                        store(spheres[i].foot, load(quadrics[i].foot) + height * normal);
-                    });
-    find_level_sets(count, spheres, found, [&](std::size_t i, const Frame& frame, Vec3, const LevelSet& level_set) {
-        const Symmetric3 seen = carried(level_set.tensor, level_set.normal, {0, 0, 1});
+    find_level_sets(count, quadrics, found, [&](std::size_t i, const PlacedLevelSet& level_set) {
+        const LevelSet& first = level_set.at_place;
+        if (std::hypot(level_set.middle.x, level_set.middle.y) > one_sided || std::abs(first.height) > far) return;
+        const Frame& frame = level_set.frame;
+        const Vec3 n = first.normal, normal = n.x * frame.u + n.y * frame.v + n.z * frame.n;
+        const double height = double(found.size[i]) * first.height;
+        store(spheres[i].normal, normal);
+        store(spheres[i].foot, load(quadrics[i].foot) + height * normal);
+    });
+    find_level_sets(count, spheres, found, [&](std::size_t i, const PlacedLevelSet& level_set) {
+        const Symmetric3 seen = carried(level_set.at_place.tensor, level_set.at_place.normal, {0, 0, 1});
         const double unit = 1 / double(found.size[i]);
-        const Symmetric3 tensor = in_plane(frame, unit * seen.xx, unit * seen.xy, unit * seen.yy);
-        found.tensor[family][i] = carried(tensor, frame.n, found.normal[i]);
+        const Symmetric3 tensor = in_plane(level_set.frame, unit * seen.xx, unit * seen.xy, unit * seen.yy);
+        found.tensor[family][i] = carried(tensor, level_set.frame.n, found.normal[i]);
         found.density[family][i] = static_cast<float>(squared_norm(tensor));
+    });
+}
+
+void RungFits::keep_fine_spheres(int rung, Rung& found) const {
+    constexpr auto fine = static_cast<std::size_t>(Family::fine_sphere),
+                   extrapolated = static_cast<std::size_t>(Family::extrapolated);
+    const Surface& surface = fine_.for_rung(rung);
+    const auto known = [&](std::size_t i) {
+        return active_[i] && std::isfinite(found.size[i]) && surface[fine_.representative(i)].weight > 0;
+    };
+    const std::size_t length = std::min(reach(window(rung)), level_.count());
+    for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
+        FineWindows windows;
+        windows.filled = filled;
+        for (int l = 0; l < filled; ++l) {
+            const std::size_t i = who[l];
+            windows.element[l] = i, windows.row[l] = samples_.data() + i * most_samples_;
+            windows.half[l] = double(found.half_size[i]), windows.whole[l] = double(found.size[i]);
+        }
+        const FineSpheres spheres = fine_spheres(fine_, surface, windows, length, found.normal);
+        for (int l = 0; l < filled; ++l) {
+            const std::size_t i = who[l];
+            found.tensor[fine][i] = spheres.whole[l], found.tensor[extrapolated][i] = spheres.extrapolated[l];
+            found.density[fine][i] = static_cast<float>(squared_norm(spheres.whole[l]));
+            found.density[extrapolated][i] = static_cast<float>(squared_norm(spheres.extrapolated[l]));
+        }
     });
 }
 

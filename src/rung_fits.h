@@ -8,10 +8,11 @@
 #include <limits>
 #include <vector>
 
+#include "fine_spheres.h"
 #include "fitted_curvature.h"
 #include "gaussmap/neighbors.h"
 #include "lane_averages.h"
-#include "lane_spheres.h"
+#include "level_sets.h"
 #include "pyramid.h"
 #include "scale_ladder.h"
 #include "window_fits.h"
@@ -60,24 +61,23 @@ inline Rung at(const Rung& rung, const std::vector<std::int32_t>& index) {
     return picked;
 }
 
-/// Where a surface is under each element of a level.
-using Surface = std::vector<SphereSample>;
-
 /// The fits of a level's elements, rung after rung; each moves the feet of the elements to the surface that it finds.
 class RungFits {
   public:
     /// \param active  elements that are fitted.
     /// \param dead    of each family, elements that it has left: averages that no family asks for are not made.
+    /// \param fine    under the level's elements; gets what the rungs find.
     RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const FamilyFlags& dead,
-             const Execution& run)
+             FineSurface& fine, const Execution& run)
         : elements_(elements),
           level_(level),
           active_(active),
           dead_(dead),
+          fine_(fine),
           run_{run.threads, {}},
           index_(Points(level.position), run_),
-          most_averaged_(elements.connected || level.members == 1 ? few_samples : all_samples),
-          most_samples_(spheres_tried() ? all_samples : most_averaged_),
+          most_averaged_(elements.connected || level.members == 1 ? few_samples : most_in_window),
+          most_samples_(spheres_tried() ? reach(most_in_window) : most_averaged_),
           samples_(level.count() * most_samples_, -1) {}
 
     /// The finds of a rung, fitted and averaged, at the active elements.
@@ -90,6 +90,8 @@ class RungFits {
     }
     /// Of how many in a window averages take one.
     std::size_t averaged_stride(std::size_t window) const { return (window + most_averaged_ - 1) / most_averaged_; }
+    /// Elements that members within a window belong to.
+    std::size_t reach(std::size_t window) const { return level_.members == 1 ? window : window + window / 4; }
     bool spheres_tried() const { return families_tried(elements_) > static_cast<int>(Family::sphere); }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
@@ -99,11 +101,12 @@ class RungFits {
     void fit_windows(const std::size_t (&who)[fit_lanes], int rung, WindowFits& windows, Rung& found);
     void keep(std::size_t i, const WindowFit& fit, Rung& found);
     void average(int rung, Rung& found);
-    void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count,
+    void average_elements(const std::size_t (&who)[fit_lanes], int filled, int count, int stride,
                           const std::vector<SurfaceSample>& samples, Rung& found);
     template <class Keep>
     void find_level_sets(int count, const Surface& surface, const Rung& found, Keep&& keep) const;
     void keep_spheres(int count, Rung& found) const;
+    void keep_fine_spheres(int rung, Rung& found) const;
     bool averages_wanted(std::size_t i) const;
     void keep(std::size_t i, int lane, double own, const LaneAverages (&windows)[2], const LaneCentres& centres,
               Rung& found);
@@ -112,14 +115,16 @@ class RungFits {
     Level& level_;
     const std::vector<std::uint8_t>& active_;
     const FamilyFlags& dead_;
+    FineSurface& fine_;
     Execution run_;
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width()` neighbours of each element
     /// Level sets of spheres are second derivatives, and ask for every element of a window; averages for those of a
     /// coarser level's.
-    static constexpr std::size_t few_samples = 96, all_samples = 216;
+    static constexpr std::size_t few_samples = 96, most_in_window = 216;
     std::size_t most_averaged_, most_samples_;
-    /// `most_samples_` of each element's window, −1 for itself: those of averages, nearest first, then the others.
+    /// `most_samples_` of each element's nearest, nearest first, −1 for itself; where spheres are not tried those of
+    /// the averages alone.
     std::vector<std::int32_t> samples_;
 };
 

@@ -55,12 +55,18 @@ constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.6, 2},
                                                   {0.23, 0.30, 0.36, 0.36, 1, 2},
                                                   {0.10, 0.28, 0.32, 0.32, 1.35, 2},
                                                   {1, 0.50, 0.78, 0.78, 3, 2},
-                                                  {0.45, 0.33, 1, 1, 0.31, 2.5}}};
+                                                  {0.45, 0.33, 1, 1, 0.31, 2.5},
+                                                  {2.5, 0.35, 0.6, 0.6, 0.5, 2.5},
+                                                  {29, 0.36, 1.4, 1.4, 1, 2.5}}};
 
-/// On the lowest level samples lie as they come. That moves level sets of spheres where the surface is none, by a part
+constexpr bool of_fine_spheres(int family) {
+    return family == static_cast<int>(Family::fine_sphere) || family == static_cast<int>(Family::extrapolated);
+}
+
+/// Elements of the lowest level lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².
-double uneven_variance(const Symmetric3& shape, int samples) {
-    constexpr double part = 0.1;
+double uneven_variance(const Symmetric3& shape, int family, int samples) {
+    const double part = of_fine_spheres(family) ? 0.03 : 0.1;
     const double density = squared_norm(shape), sum = shape.xx + shape.yy + shape.zz;
     return part * 4 * density * std::max(0.0, density - 0.5 * sum * sum) / samples;
 }
@@ -188,6 +194,9 @@ constexpr float not_feared_near = 1;
 /// more.
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
+/// Fine spheres bear a quadric's misfit, as they stand on windows of a third, up to residuals that are this part of the
+/// squared radius: at most that on a thick torus under little noise, 0.07 and more where a window holds all of a tube.
+constexpr float as_wide_as_shape = 0.01F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -219,8 +228,9 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
             // The square of what noise adds to the density is of second order, and counts where it is not small.
             const double part = noise[i] * relative_variance(lower, family, i), second = part * lower.trace[q][i];
             variance[i] = static_cast<float>(part * lower.variance[q][i] + second * second);
-            if (family == static_cast<int>(Family::sphere) && level_.members == 1)
-                variance[i] += static_cast<float>(uneven_variance(lower.tensor[family][i], rung_neighbors(rung)));
+            if (of_fine_spheres(family) || (family == static_cast<int>(Family::sphere) && level_.members == 1))
+                variance[i] +=
+                    static_cast<float>(uneven_variance(lower.tensor[family][i], family, rung_neighbors(rung)));
         }
         changes.around[family] = lower.density[family];
         variances.push_back(&variance), squares.push_back(&changes.square[family]);
@@ -256,8 +266,9 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
         // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
-        const bool misfit =
-            rung > 0 && residual[i] > known.fitting * noise[i] && lower.size[i] * lower.size[i] > 20 * noise[i];
+        const float size2 = lower.size[i] * lower.size[i];
+        const bool misfit = rung > 0 && residual[i] > known.fitting * noise[i] && size2 > 20 * noise[i] &&
+                            (!of_fine_spheres(family) || residual[i] - noise[i] > as_wide_as_shape * size2);
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
@@ -387,9 +398,10 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     std::vector<Measured> measured = {measured_so_far(result)};
     measured.reserve(levels.capacity());
     Standing standing(std::move(active));
+    FineSurface fine(levels.front());
     Rung lower;
     for (int rung = 0; rung < most_rungs;) {
-        RungFits fits(elements, levels.back(), standing.active, standing.dead, run);
+        RungFits fits(elements, levels.back(), standing.active, standing.dead, fine, run);
         Ladder ladder(elements, levels.back(), standing, measured.back(), run);
         const int level = level_of(rung);
         bool on = true;
@@ -408,6 +420,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
         levels.push_back(coarsened(levels.back(), {run.threads, {}}));
         const Level& below = levels[levels.size() - 2];
         standing = coarsened(standing, below, levels.back());
+        fine.coarsen(below, levels.back());
         lower = at(lower, levels.back().representative);
         measured.push_back(nothing_measured(levels.back().count()));
     }

@@ -11,9 +11,19 @@ namespace gaussmap {
 
 /// What is tried on every rung: a quadric and a quartic in chords; the quadric's shape operator averaged over half the
 /// neighbours it was fitted to, and over all of them; the slopes of the quadrics' normals over the same; on clouds the
-/// surface of algebraic spheres.
-enum class Family : std::uint8_t { quadric, half_mean, mean, half_slope, slope, quartic, sphere };
-constexpr int families = 7;
+/// surface of algebraic spheres, the same over finer samples (fine_spheres.h), and what those extrapolate to.
+enum class Family : std::uint8_t {
+    quadric,
+    half_mean,
+    mean,
+    half_slope,
+    slope,
+    quartic,
+    sphere,
+    fine_sphere,
+    extrapolated
+};
+constexpr int families = 9;
 inline int families_tried(const Elements& elements) {
     return elements.connected ? static_cast<int>(Family::sphere) : families;
 }

@@ -28,6 +28,9 @@ constexpr float of_squared_density = 0.25F;
 /// Spheres of several scales are about as good, and their mix errs less than the best of them, which the error told is
 /// of: squared, by this factor.
 constexpr float of_mixed_spheres = 0.7F;
+/// Extrapolated spheres are chosen where their bias changes its sign, and their mix errs less than what the changes
+/// tell, by this.
+constexpr float of_extrapolated = 0.3F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
@@ -66,7 +69,10 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
             if (step == 2 * wanted[i]) twice[i] = smooth[i];
         }
     }
-    const auto of_spheres = [&](std::size_t i) { return family_of(measured.choice[i]) == Family::sphere; };
+    const auto of_spheres = [&](std::size_t i) {
+        return family_of(measured.choice[i]) == Family::sphere || family_of(measured.choice[i]) == Family::fine_sphere;
+    };
+    const auto extrapolated = [&](std::size_t i) { return family_of(measured.choice[i]) == Family::extrapolated; };
     std::vector<float> bias(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
         if (wanted[i] == 0) continue;
@@ -83,7 +89,7 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
         const float noise = measured.noise[i], told = std::max(0.0F, measured.error[i] - noise),
                     more = std::max(0.0F, bias[i] - missing_of_noise * noise);
         if (!of_spheres(i)) {
-            measured.error[i] = noise + told + more;
+            measured.error[i] = (extrapolated(i) ? of_extrapolated : 1) * (noise + told + more);
             continue;
         }
         // The geometric mean, in which what the next rung changes counts three times.

@@ -1,8 +1,9 @@
-// What a rung of the ladder finds: exact on a sphere for every family, at borders too; and the level sets of spheres of
-// the spheres' surface against both passes made one by one.
+// What a rung of the ladder finds: exact on a sphere for every family, at borders too; the level sets of spheres of the
+// spheres' surface against both passes made one by one, and those of finer samples against theirs.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -77,13 +78,14 @@ TEST(RungFits, AreExactOnASphereWithABorder) {
     const std::vector<std::uint8_t> active(points.size(), 1);
     const Elements cloud = cloud_of(points.size());
     const FamilyFlags dead = nobody(points.size());
-    RungFits fits(cloud, level, active, dead, {});
+    FineSurface fine(level);
+    RungFits fits(cloud, level, active, dead, fine, {});
     // Views settle from rung to rung, and are some 1e-5 off here.
     for (int rung = 0; rung < 2; ++rung) fits.step(rung);
     const Rung found = fits.step(2);
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_NEAR(std::abs(dot(found.normal[i], points[i])), 1, 1e-10);
-        for (int f = 0; f < families; ++f) {
+        for (int f = 0; f < static_cast<int>(Family::fine_sphere); ++f) {
             EXPECT_NEAR(found.density[static_cast<std::size_t>(f)][i], 2, 1e-5) << f;
             EXPECT_NEAR(squared_norm(found.tensor[static_cast<std::size_t>(f)][i]), 2, 1e-5) << f;
             EXPECT_NEAR(length(product(found.tensor[static_cast<std::size_t>(f)][i], points[i])), 0, 1e-4) << f;
@@ -105,7 +107,8 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
     const std::vector<std::uint8_t> active(points.size(), 1);
     const Elements cloud = cloud_of(points.size());
     const FamilyFlags dead = nobody(points.size());
-    RungFits fits(cloud, level, active, dead, {});
+    FineSurface fine(level);
+    RungFits fits(cloud, level, active, dead, fine, {});
     const Rung found = fits.step(rung);
     std::vector<Place> quadrics, surface;
     std::vector<std::vector<std::size_t>> rows;
@@ -147,7 +150,9 @@ TEST(RungFits, AveragesAreNotFoundWhereNoFamilyAsksForThem) {
         for (const Family family : {Family::quadric, Family::half_mean, Family::mean, Family::half_slope})
             dead[static_cast<std::size_t>(family)][i] = 1;
     for (std::size_t i = 0; i < points.size(); i += 4) dead[static_cast<std::size_t>(Family::slope)][i] = 1;
-    RungFits fits_of_all(cloud, all, active, nobody_dead, {}), fits_of_some(cloud, some, active, dead, {});
+    FineSurface fine_of_all(all), fine_of_some(some);
+    RungFits fits_of_all(cloud, all, active, nobody_dead, fine_of_all, {}),
+        fits_of_some(cloud, some, active, dead, fine_of_some, {});
     const Rung whole = fits_of_all.step(1), part = fits_of_some.step(1);
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (const Family family : {Family::half_mean, Family::mean, Family::half_slope, Family::slope}) {
@@ -161,5 +166,144 @@ TEST(RungFits, AveragesAreNotFoundWhereNoFamilyAsksForThem) {
             const auto f = static_cast<std::size_t>(family);
             EXPECT_EQ(part.density[f][i], whole.density[f][i]) << i;
         }
+    }
+}
+
+namespace {
+
+/// A torus's shape operator squared, at a place beside it.
+double density_of_torus(Vec3 p, double around, double tube) {
+    const double from_axis = std::hypot(p.x, p.y), cosine = (from_axis - around) / std::hypot(from_axis - around, p.z);
+    return 1 / (tube * tube) + std::pow(cosine / (around + tube * cosine), 2);
+}
+
+std::vector<Vec3> on_torus(Random& random, double around, double tube, std::size_t count) {
+    std::vector<Vec3> points;
+    while (points.size() < count) {
+        const double u = 2 * std::numbers::pi * random.uniform(), v = 2 * std::numbers::pi * random.uniform();
+        const double r = around + tube * std::cos(v);
+        if (random.uniform() * (around + tube) < r)
+            points.push_back({r * std::cos(u), r * std::sin(u), tube * std::sin(v)});
+    }
+    return points;
+}
+
+}  // namespace
+
+TEST(FineSpheres, StandOnTheSurfaceOfAThirdAndExtrapolate) {
+    // Against level sets made one by one, of all points as the rung with a third of the neighbours left them.
+    constexpr int rung = 3;
+    Random random(4);
+    const std::vector<Vec3> points = on_torus(random, 1, 0.5, 600);
+    Level level = level_of(points);
+    const std::vector<std::uint8_t> active(points.size(), 1);
+    const Elements cloud = cloud_of(points.size());
+    const FamilyFlags dead = nobody(points.size());
+    FineSurface fine(level);
+    RungFits fits(cloud, level, active, dead, fine, {});
+    std::vector<Place> surface;
+    const Rung first = fits.step(rung - FineSurface::rungs_below);
+    for (std::size_t i = 0; i < points.size(); ++i) surface.push_back({first.normal[i], level.foot_of(i)});
+    for (int r = rung - FineSurface::rungs_below + 1; r < rung; ++r) fits.step(r);
+    std::vector<Vec3> before;
+    for (std::size_t i = 0; i < points.size(); ++i) before.push_back(level.foot_of(i));
+    const Rung found = fits.step(rung);
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        std::vector<std::size_t> row(points.size());
+        std::iota(row.begin(), row.end(), 0u);
+        const auto away = [&](std::size_t j) { return squared(points[j] - before[i]); };
+        std::sort(row.begin(), row.end(), [&](std::size_t a, std::size_t b) { return away(a) < away(b); });
+        row.resize(static_cast<std::size_t>(rung_neighbors(rung)));
+        const auto shape = [&](double radius) {
+            SphereSums sums;
+            const Place& own = surface[i];
+            if (std::find(row.begin(), row.end(), i) == row.end()) row.push_back(i);
+            for (const std::size_t j : row) {
+                const Vec3 d = 1 / radius * (surface[j].foot - own.foot);
+                if (!(squared(d) < 1)) continue;
+                const Vec3 reflected = own.normal - (2 * dot(d, own.normal) / (squared(d) + near_by)) * d;
+                const double side = dot(surface[j].normal, reflected) < 0 ? -1 : 1;
+                sums.add(d, side * surface[j].normal, 1);
+            }
+            const LevelSet through = sums.level_set();
+            const Symmetric3 s = carried(through.tensor, through.normal, own.normal);
+            // Curvatures of a parallel surface: 1 / k grows by the height.
+            const double h = through.height, sum = s.xx + s.yy + s.zz, product = 0.5 * (sum * sum - squared_norm(s)),
+                         stretch = 1 + h * sum + h * h * product;
+            Symmetric3 parallel;
+            add(parallel, 1 / stretch, s);
+            const Vec3 n = own.normal;
+            const Frame frame = frame_about(n);
+            add(parallel, h * product / stretch, in_plane(frame, 1, 0, 1));
+            Symmetric3 tensor;
+            add(tensor, 1 / radius, carried(parallel, n, found.normal[i]));
+            return tensor;
+        };
+        const Symmetric3 whole = shape(double(found.size[i])), half = shape(double(found.half_size[i]));
+        if (std::isnan(found.density[static_cast<int>(Family::extrapolated)][i])) continue;
+        ++seen;
+        Symmetric3 extrapolated;
+        add(extrapolated, 2, half);
+        add(extrapolated, -1, whole);
+        const double of_whole = squared_norm(whole), of_both = squared_norm(extrapolated);
+        EXPECT_NEAR(found.density[static_cast<int>(Family::fine_sphere)][i], of_whole, 1e-5 * (1 + of_whole)) << i;
+        EXPECT_NEAR(found.density[static_cast<int>(Family::extrapolated)][i], of_both, 1e-5 * (1 + of_both)) << i;
+    }
+    EXPECT_GT(seen, points.size() * 9 / 10);
+}
+
+TEST(FineSpheres, AreCloserThanSpheresOfWideWindows) {
+    // Without noise what is left is bias: of the rung's own quadrics that of wide windows.
+    Random random(5);
+    const std::vector<Vec3> points = on_torus(random, 1, 0.6, 2000);
+    Level level = level_of(points);
+    const std::vector<std::uint8_t> active(points.size(), 1);
+    const Elements cloud = cloud_of(points.size());
+    const FamilyFlags dead = nobody(points.size());
+    FineSurface fine(level);
+    RungFits fits(cloud, level, active, dead, fine, {});
+    Rung found;
+    for (int rung = 0; rung <= 6; ++rung) found = fits.step(rung);
+    double wide = 0, closer = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double truth = density_of_torus(points[i], 1, 0.6);
+        wide += std::pow(double(found.density[static_cast<int>(Family::sphere)][i]) - truth, 2);
+        closer += std::pow(double(found.density[static_cast<int>(Family::fine_sphere)][i]) - truth, 2);
+    }
+    EXPECT_LT(closer, 0.5 * wide);
+}
+
+TEST(FineSurface, FollowsTheElementsOfCoarserLevels) {
+    Random random(6);
+    const std::vector<Vec3> points = on_torus(random, 1, 0.5, 500);
+    Level lowest = level_of(points);
+    for (std::size_t i = 0; i < points.size(); ++i) lowest.normal[i] = unit(points[i]);
+    lowest.graph.index.assign(points.size() * ElementGraph::degree, -1);
+    FineSurface fine(lowest);
+    Level above = coarsened(lowest, {});
+    fine.coarsen(lowest, above);
+    std::vector<int> times(points.size(), 0);
+    for (std::size_t e = 0; e < above.count(); ++e) {
+        EXPECT_EQ(fine.representative(e), static_cast<std::size_t>(above.representative[e]));
+        for (const std::int32_t* member = fine.begin(e); member != fine.end(e); ++member) {
+            EXPECT_EQ(lowest.parent[static_cast<std::size_t>(*member)], static_cast<std::int32_t>(e));
+            ++times[static_cast<std::size_t>(*member)];
+        }
+    }
+    EXPECT_TRUE(std::all_of(times.begin(), times.end(), [](int n) { return n == 1; }));
+    // Samples lie on the element's quadric: of a plane, on the plane, of its normal.
+    Rung found(above.count());
+    const std::vector<std::uint8_t> active(above.count(), 1);
+    for (std::size_t e = 0; e < above.count(); ++e) found.normal[e] = {0, 0, 1}, found.size[e] = 1;
+    found.tensor[static_cast<int>(Family::quadric)].assign(above.count(), {0.2, 0, 0, 0.4, 0, 0});
+    fine.keep(4, above, active, found);
+    const Surface& surface = fine.for_rung(4 + FineSurface::rungs_below);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+        const Vec3 foot = above.foot_of(static_cast<std::size_t>(lowest.parent[j])), d = lowest.foot_of(j) - foot;
+        const Vec3 expected = foot + Vec3{d.x, d.y, -0.1 * d.x * d.x - 0.2 * d.y * d.y};
+        EXPECT_NEAR(length(load(surface[j].foot) - expected), 0, 1e-12);
+        EXPECT_NEAR(length(load(surface[j].normal) - unit(Vec3{0.2 * d.x, 0.4 * d.y, 1})), 0, 1e-12);
+        EXPECT_EQ(surface[j].weight, 1);
     }
 }

@@ -391,10 +391,12 @@ TEST(Estimators, HaveNamesAndSayWhatTheyLack) {
     EXPECT_STREQ(choice_name(20), "slope 24");
     EXPECT_STREQ(choice_name(21), "quartic free 24");
     EXPECT_STREQ(choice_name(22), "sphere 24");
-    EXPECT_STREQ(choice_name(25), "mean quadric 35");
-    EXPECT_STREQ(choice_name(35), "quartic free 50");
-    EXPECT_STREQ(choice_name(37), "quadric 72");
-    EXPECT_STREQ(choice_name(119), "quartic free 4050");
+    EXPECT_STREQ(choice_name(23), "fine sphere 24");
+    EXPECT_STREQ(choice_name(24), "extrapolated sphere 24");
+    EXPECT_STREQ(choice_name(27), "mean quadric 35");
+    EXPECT_STREQ(choice_name(39), "quartic free 50");
+    EXPECT_STREQ(choice_name(43), "quadric 72");
+    EXPECT_STREQ(choice_name(147), "quartic free 4050");
     EXPECT_EQ(support::refusal([] { choice_name(4); }), "choice = 4 is never written");
     EXPECT_EQ(support::refusal([] { choice_name(255); }), "choice = 255 is never written");
     const Surface s = sphere(1);
