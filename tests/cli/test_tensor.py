@@ -153,7 +153,8 @@ def test_no_keys_that_were_not_asked_for(gaussmap):
     assert not {"tensor", "confidence"} & set(report) and report["chosen"] == {"quartic 24": report["vertices"]}
 
 
-FAMILIES = ("quadric", "half mean quadric", "mean quadric", "half slope", "slope", "quartic free", "sphere")
+FAMILIES = ("quadric", "half mean quadric", "mean quadric", "half slope", "slope", "quartic free", "sphere", "fine sphere",
+            "extrapolated sphere")
 NAMES = {"none", "quadric 9", "quartic 24"} | {
     f"{family} {first * 3**level}" for family in FAMILIES for first in (24, 35, 50) for level in range(5)
 }
