@@ -43,8 +43,9 @@ struct Traits {
     /// Growth of the bias that is told of, relative to the growth that a choice reckons with. That of operators
     /// averaged where windows are as wide as the shape slows down. Level sets of spheres are exact on spheres and
     /// nearly so along circles; their bias sets in late, and then more than doubles from rung to rung: told is what
-    /// slower growth would mean. Those of fine samples keep to a part of that. That of wide slopes and of quartics is less than the changes let fear: so is the error
-    /// of what was chosen, and the bias of quartics is told by their windows.
+    /// slower growth would mean. Those of fine samples keep to a part of that. That of wide slopes and of quartics is
+    /// less than the changes let fear: so is the error of what was chosen, and the bias of quartics is told by their
+    /// windows.
     double told;
     /// Residuals, relative to the noise, of its quadrics or quartics up to which a surface was met alone.
     double fitting;
