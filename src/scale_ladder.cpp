@@ -196,7 +196,8 @@ constexpr float not_feared_near = 1;
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
 /// Fine spheres bear a quadric's misfit, as they stand on windows of a third, up to residuals that are this part of the
-/// squared radius: at most that on a thick torus under little noise, 0.07 and more where a window holds all of a tube.
+/// squared radius; not on the lowest level, where what misfits is detail that its few points show: at most that on a
+/// thick torus under little noise, 0.07 and more where a window holds all of a tube.
 constexpr float as_wide_as_shape = 0.01F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
@@ -268,8 +269,9 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
         // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
         const float size2 = lower.size[i] * lower.size[i];
+        const bool bears_misfit = of_fine_spheres(family) && level_.members > 1;
         const bool misfit = rung > 0 && residual[i] > known.fitting * noise[i] && size2 > 20 * noise[i] &&
-                            (!of_fine_spheres(family) || residual[i] - noise[i] > as_wide_as_shape * size2);
+                            (!bears_misfit || residual[i] - noise[i] > as_wide_as_shape * size2);
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
