@@ -3,22 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
+#include "parallel.h"
 #include "rung_fits.h"
 #include "shape_tensor.h"
 
 namespace gaussmap {
 namespace {
 
+constexpr std::size_t grain = 1024;
+
 constexpr Symmetric3 unknown = {NAN, NAN, NAN, NAN, NAN, NAN};
 
 /// The shape operator of the level set of height 0, which is parallel to the one through the place: S (1 + h S)⁻¹.
-Symmetric3 on_surface(const LevelSet& level_set) {
+Symmetric3 on_surface(const PlacedLevelSet& level_set) {
     constexpr double far = 0.5, folded = 0.3;
-    constexpr Vec3 up = {0, 0, 1};
-    const Symmetric3 s = carried(level_set.tensor, level_set.normal, up);
-    const double h = level_set.height;
+    const Symmetric3& s = level_set.shape;
+    const double h = level_set.at_place.height;
     const double stretch = (1 + h * s.xx) * (1 + h * s.yy) - h * h * s.xy * s.xy;
     if (!(std::abs(h) < far) || !(stretch > folded)) return unknown;
     const double determinant = s.xx * s.yy - s.xy * s.xy;
@@ -50,19 +51,23 @@ void FineSurface::list_members(std::size_t elements) {
         member_[static_cast<std::size_t>(next[static_cast<std::size_t>(over_[j])]++)] = static_cast<std::int32_t>(j);
 }
 
-void FineSurface::keep(int rung, const Level& level, const std::vector<std::uint8_t>& active, const Rung& found) {
+void FineSurface::keep(int rung, const Level& level, const std::vector<std::uint8_t>& active, const Rung& found,
+                       const Execution& run) {
     Surface& surface = surface_[static_cast<std::size_t>(rung % rungs_below)];
     surface.assign(over_.size(), {});
-    for (std::size_t j = 0; j < over_.size(); ++j) {
-        const auto i = static_cast<std::size_t>(over_[j]);
-        if (!active[i] || !std::isfinite(found.size[i])) continue;
-        // The quadric about the foot of the element that stands for this one, beside that foot.
-        const Vec3 foot = level.foot_of(i), n = found.normal[i], d = lowest_.foot_of(j) - foot, x = d - dot(d, n) * n;
-        const Vec3 turn = product(found.tensor[static_cast<int>(Family::quadric)][i], x);
-        store(surface[j].foot, foot + x - 0.5 * dot(x, turn) * n);
-        store(surface[j].normal, unit(n + turn));
-        surface[j].weight = 1;
-    }
+    for_blocks(over_.size(), grain, run, [&](std::size_t, std::size_t j, std::size_t last) {
+        for (; j < last; ++j) {
+            const auto i = static_cast<std::size_t>(over_[j]);
+            if (!active[i] || !std::isfinite(found.size[i])) continue;
+            // The quadric about the foot of the element that stands for this one, beside that foot.
+            const Vec3 foot = level.foot_of(i), n = found.normal[i], d = lowest_.foot_of(j) - foot,
+                       x = d - dot(d, n) * n;
+            const Vec3 turn = product(found.tensor[static_cast<int>(Family::quadric)][i], x);
+            store(surface[j].foot, foot + x - 0.5 * dot(x, turn) * n);
+            store(surface[j].normal, unit(n + turn));
+            surface[j].weight = 1;
+        }
+    });
 }
 
 const Surface& FineSurface::for_rung(int rung) const {
@@ -84,28 +89,24 @@ FineSpheres fine_spheres(const FineSurface& fine, const Surface& surface, const 
             if (windows.row[l][j] >= 0) take(static_cast<std::size_t>(windows.row[l][j]));
         places[l].place = &surface[own];
     }
-    const auto look = [&](const double(&radius)[fit_lanes], double part, Symmetric3(&tensor)[fit_lanes]) {
-        std::size_t most = 0;
-        for (int l = 0; l < windows.filled; ++l) most = std::max(most, samples[l].size());
-        for (int l = 0; l < windows.filled; ++l) samples[l].resize(most, -1);
-        for (int l = 0; l < windows.filled; ++l) places[l].samples = samples[l].data(), places[l].radius = radius[l];
+    std::size_t most = 0;
+    for (int l = 0; l < windows.filled; ++l) most = std::max(most, samples[l].size());
+    for (int l = 0; l < windows.filled; ++l) samples[l].resize(most, -1), places[l].samples = samples[l].data();
+    const auto look = [&](const double(&radius)[fit_lanes], std::size_t count, Symmetric3(&tensor)[fit_lanes]) {
+        for (int l = 0; l < windows.filled; ++l) places[l].radius = radius[l];
         PlacedLevelSet found[fit_lanes];
-        const auto count = static_cast<int>(std::ceil(part * static_cast<double>(most)));
-        find_level_sets(surface, places, windows.filled, count, Count::all, found);
-        for (int l = 0; l < windows.filled; ++l) {
-            tensor[l] = unknown;
-            if (!found[l].found) continue;
-            const Symmetric3 s = on_surface(found[l].at_place);
-            const double u = 1 / radius[l];
-            tensor[l] = carried(in_plane(found[l].frame, u * s.xx, u * s.xy, u * s.yy), found[l].frame.n,
-                                across[windows.element[l]]);
-        }
+        find_level_sets(surface, places, windows.filled, static_cast<int>(count), Count::all, found);
+        for (int l = 0; l < windows.filled; ++l)
+            tensor[l] = found[l].found ? carried(in_space(found[l], on_surface(found[l]), radius[l]), found[l].frame.n,
+                                                 across[windows.element[l]])
+                                       : unknown;
     };
+    // Half of a window and a little more: members of the nearest elements come first, and only nearly by distance.
+    constexpr double part_of_half = 0.7;
     FineSpheres result;
     Symmetric3 half[fit_lanes];
-    // Half of a window and a little more, as members of the nearest elements come first.
-    look(windows.whole, 1, result.whole);
-    look(windows.half, 0.7, half);
+    look(windows.whole, most, result.whole);
+    look(windows.half, static_cast<std::size_t>(std::ceil(part_of_half * static_cast<double>(most))), half);
     for (int l = 0; l < windows.filled; ++l) {
         result.extrapolated[l] = {};
         // Twice the area makes twice the bias, where it is of the lowest order.

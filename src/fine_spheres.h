@@ -27,9 +27,10 @@ class FineSurface {
     /// From now on rungs stand on the elements of `above`.
     void coarsen(const Level& below, const Level& above);
     /// Keep what a rung found, in place of what is no longer asked for.
-    void keep(int rung, const Level& level, const std::vector<std::uint8_t>& active, const Rung& found);
+    void keep(int rung, const Level& level, const std::vector<std::uint8_t>& active, const Rung& found,
+              const Execution& run);
 
-    /// The surface for the spheres of a rung; empty on the first ones.
+    /// The surface for the spheres of a rung, until what that found is kept; empty on the first ones.
     const Surface& for_rung(int rung) const;
     /// The element of the lowest level at whose foot an element is.
     std::size_t representative(std::size_t element) const { return static_cast<std::size_t>(representative_[element]); }

@@ -31,7 +31,7 @@ struct alignas(32) LaneFrames {
     LaneValues foot[3] = {};
     const std::int32_t* samples[fit_lanes] = {};  ///< −1 where there is none, or where it is not to count
     int count = 0;                                ///< of the samples of each lane
-    int stride = 1;                               ///< of a row of samples every so-manieth is one
+    int stride = 1;                               ///< of a row one in so many is a sample
 
     void set(int lane, const Frame& frame, Vec3 at) {
         const Vec3 axes[3] = {frame.u, frame.v, frame.n};

@@ -32,6 +32,7 @@ void find_level_sets(const Surface& surface, const SphereWindow* windows, int fi
         found[l].middle = sums.middle();
         found[l].at_place = sums.level_set();
         found[l].found = found[l].at_place.normal.z > one_sheet;
+        if (found[l].found) found[l].shape = carried(found[l].at_place.tensor, found[l].at_place.normal, up);
     }
 }
 

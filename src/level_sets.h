@@ -25,8 +25,15 @@ struct PlacedLevelSet {
     Frame frame;
     Vec3 middle;  ///< mean place of the samples
     LevelSet at_place;
+    Symmetric3 shape;    ///< its shape operator, carried to the place's tangent plane
     bool found = false;  ///< false where samples do not determine it, or where it turns away from the place
 };
+
+/// A shape operator of the place's tangent plane, seen like the level set, in space.
+inline Symmetric3 in_space(const PlacedLevelSet& seen, const Symmetric3& shape, double radius) {
+    const double unit = 1 / radius;
+    return in_plane(seen.frame, unit * shape.xx, unit * shape.xy, unit * shape.yy);
+}
 
 /// Which samples count.
 enum class Count {

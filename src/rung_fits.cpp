@@ -169,7 +169,7 @@ void RungFits::average(int rung, Rung& found) {
     if (!spheres_tried()) return;
     keep_spheres(static_cast<int>(k), found);
     if (rung >= FineSurface::rungs_below) keep_fine_spheres(rung, found);
-    fine_.keep(rung, level_, active_, found);
+    fine_.keep(rung, level_, active_, found, run_);
 }
 
 /// Quadrics ask for what the slopes tell of borders.
@@ -240,9 +240,7 @@ void RungFits::keep_spheres(int count, Rung& found) const {
         store(spheres[i].foot, load(quadrics[i].foot) + height * normal);
     });
     find_level_sets(count, spheres, found, [&](std::size_t i, const PlacedLevelSet& level_set) {
-        const Symmetric3 seen = carried(level_set.at_place.tensor, level_set.at_place.normal, {0, 0, 1});
-        const double unit = 1 / double(found.size[i]);
-        const Symmetric3 tensor = in_plane(level_set.frame, unit * seen.xx, unit * seen.xy, unit * seen.yy);
+        const Symmetric3 tensor = in_space(level_set, level_set.shape, double(found.size[i]));
         found.tensor[family][i] = carried(tensor, level_set.frame.n, found.normal[i]);
         found.density[family][i] = static_cast<float>(squared_norm(tensor));
     });

@@ -196,8 +196,8 @@ constexpr float not_feared_near = 1;
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
 /// Fine spheres bear a quadric's misfit, as they stand on windows of a third, up to residuals that are this part of the
-/// squared radius; not on the lowest level, where what misfits is detail that its few points show: at most that on a
-/// thick torus under little noise, 0.07 and more where a window holds all of a tube.
+/// squared radius: as large they are on a thick torus under little noise, and 0.07 where a window holds all of a tube.
+/// Not on the lowest level, where what misfits is detail that its few points show.
 constexpr float as_wide_as_shape = 0.01F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;

@@ -28,8 +28,7 @@ constexpr float of_squared_density = 0.25F;
 /// Spheres of several scales are about as good, and their mix errs less than the best of them, which the error told is
 /// of: squared, by this factor.
 constexpr float of_mixed_spheres = 0.7F;
-/// Extrapolated spheres are chosen where their bias changes its sign, and their mix errs less than what the changes
-/// tell, by this.
+/// Extrapolated spheres err less than what the changes tell: squared, by this factor.
 constexpr float of_extrapolated = 0.3F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;

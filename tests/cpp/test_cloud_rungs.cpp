@@ -38,6 +38,24 @@ FamilyFlags nobody(std::size_t count) {
     return flags;
 }
 
+/// All points on the ladder, with every family.
+struct Climb {
+    Level level;
+    std::vector<std::uint8_t> active;
+    Elements cloud;
+    FamilyFlags dead;
+    FineSurface fine;
+    RungFits fits;
+
+    explicit Climb(const std::vector<Vec3>& points)
+        : level(level_of(points)),
+          active(points.size(), 1),
+          cloud(cloud_of(points.size())),
+          dead(nobody(points.size())),
+          fine(level),
+          fits(cloud, level, active, dead, fine, {}) {}
+};
+
 struct Place {
     Vec3 normal, foot;
 };
@@ -74,15 +92,10 @@ TEST(RungFits, AreExactOnASphereWithABorder) {
         const Vec3 p = unit(Vec3{random.normal(), random.normal(), random.normal()});
         if (p.z > 0.3) points.push_back(p);
     }
-    Level level = level_of(points);
-    const std::vector<std::uint8_t> active(points.size(), 1);
-    const Elements cloud = cloud_of(points.size());
-    const FamilyFlags dead = nobody(points.size());
-    FineSurface fine(level);
-    RungFits fits(cloud, level, active, dead, fine, {});
+    Climb climb(points);
     // Views settle from rung to rung, and are some 1e-5 off here.
-    for (int rung = 0; rung < 2; ++rung) fits.step(rung);
-    const Rung found = fits.step(2);
+    for (int rung = 0; rung < 2; ++rung) climb.fits.step(rung);
+    const Rung found = climb.fits.step(2);
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_NEAR(std::abs(dot(found.normal[i], points[i])), 1, 1e-10);
         for (int f = 0; f < static_cast<int>(Family::fine_sphere); ++f) {
@@ -102,24 +115,19 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
         const double u = 2 * random.uniform() - 1, v = 2 * random.uniform() - 1;
         points.push_back({u, v, 0.2 * std::sin(3 * u) + 0.3 * v * v + 0.01 * random.normal()});
     }
-    Level level = level_of(points);
-    for (float& area : level.area) area = static_cast<float>(0.5 + random.uniform());
-    const std::vector<std::uint8_t> active(points.size(), 1);
-    const Elements cloud = cloud_of(points.size());
-    const FamilyFlags dead = nobody(points.size());
-    FineSurface fine(level);
-    RungFits fits(cloud, level, active, dead, fine, {});
-    const Rung found = fits.step(rung);
+    Climb climb(points);
+    for (float& area : climb.level.area) area = static_cast<float>(0.5 + random.uniform());
+    const Rung found = climb.fits.step(rung);
     std::vector<Place> quadrics, surface;
     std::vector<std::vector<std::size_t>> rows;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        quadrics.push_back({found.normal[i], level.foot_of(i)});
+        quadrics.push_back({found.normal[i], climb.level.foot_of(i)});
         rows.push_back(nearest(points, i, static_cast<std::size_t>(rung_neighbors(rung))));
     }
     std::size_t left = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto radius = double(found.size[i]);
-        const SphereSums sums = sums_about(quadrics, i, rows[i], level.area, radius);
+        const SphereSums sums = sums_about(quadrics, i, rows[i], climb.level.area, radius);
         const LevelSet through = sums.level_set();
         const Vec3 middle = sums.middle() - dot(sums.middle(), quadrics[i].normal) * quadrics[i].normal;
         const bool cut = length(middle) > one_sided;
@@ -131,7 +139,7 @@ TEST(RungFits, SpheresStandOnTheSurfaceOfSpheresExceptAtBorders) {
     EXPECT_LT(left, 300U);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto radius = double(found.size[i]);
-        const LevelSet through = sums_about(surface, i, rows[i], level.area, radius).level_set();
+        const LevelSet through = sums_about(surface, i, rows[i], climb.level.area, radius).level_set();
         const double truth = squared_norm(through.tensor) / (radius * radius);
         EXPECT_NEAR(found.density[static_cast<int>(Family::sphere)][i], truth, 1e-5 * (1 + truth)) << i;
     }
@@ -195,19 +203,14 @@ TEST(FineSpheres, StandOnTheSurfaceOfAThirdAndExtrapolate) {
     constexpr int rung = 3;
     Random random(4);
     const std::vector<Vec3> points = on_torus(random, 1, 0.5, 600);
-    Level level = level_of(points);
-    const std::vector<std::uint8_t> active(points.size(), 1);
-    const Elements cloud = cloud_of(points.size());
-    const FamilyFlags dead = nobody(points.size());
-    FineSurface fine(level);
-    RungFits fits(cloud, level, active, dead, fine, {});
+    Climb climb(points);
     std::vector<Place> surface;
-    const Rung first = fits.step(rung - FineSurface::rungs_below);
-    for (std::size_t i = 0; i < points.size(); ++i) surface.push_back({first.normal[i], level.foot_of(i)});
-    for (int r = rung - FineSurface::rungs_below + 1; r < rung; ++r) fits.step(r);
+    const Rung first = climb.fits.step(rung - FineSurface::rungs_below);
+    for (std::size_t i = 0; i < points.size(); ++i) surface.push_back({first.normal[i], climb.level.foot_of(i)});
+    for (int r = rung - FineSurface::rungs_below + 1; r < rung; ++r) climb.fits.step(r);
     std::vector<Vec3> before;
-    for (std::size_t i = 0; i < points.size(); ++i) before.push_back(level.foot_of(i));
-    const Rung found = fits.step(rung);
+    for (std::size_t i = 0; i < points.size(); ++i) before.push_back(climb.level.foot_of(i));
+    const Rung found = climb.fits.step(rung);
     std::size_t seen = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         std::vector<std::size_t> row(points.size());
@@ -222,8 +225,7 @@ TEST(FineSpheres, StandOnTheSurfaceOfAThirdAndExtrapolate) {
             for (const std::size_t j : row) {
                 const Vec3 d = 1 / radius * (surface[j].foot - own.foot);
                 if (!(squared(d) < 1)) continue;
-                const Vec3 reflected = own.normal - (2 * dot(d, own.normal) / (squared(d) + near_by)) * d;
-                const double side = dot(surface[j].normal, reflected) < 0 ? -1 : 1;
+                const double side = dot(surface[j].normal, support::expected_normal(d, own.normal)) < 0 ? -1 : 1;
                 sums.add(d, side * surface[j].normal, 1);
             }
             const LevelSet through = sums.level_set();
@@ -257,14 +259,9 @@ TEST(FineSpheres, AreCloserThanSpheresOfWideWindows) {
     // Without noise what is left is bias: of the rung's own quadrics that of wide windows.
     Random random(5);
     const std::vector<Vec3> points = on_torus(random, 1, 0.6, 2000);
-    Level level = level_of(points);
-    const std::vector<std::uint8_t> active(points.size(), 1);
-    const Elements cloud = cloud_of(points.size());
-    const FamilyFlags dead = nobody(points.size());
-    FineSurface fine(level);
-    RungFits fits(cloud, level, active, dead, fine, {});
+    Climb climb(points);
     Rung found;
-    for (int rung = 0; rung <= 6; ++rung) found = fits.step(rung);
+    for (int rung = 0; rung <= 6; ++rung) found = climb.fits.step(rung);
     double wide = 0, closer = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double truth = density_of_torus(points[i], 1, 0.6);
@@ -297,7 +294,7 @@ TEST(FineSurface, FollowsTheElementsOfCoarserLevels) {
     const std::vector<std::uint8_t> active(above.count(), 1);
     for (std::size_t e = 0; e < above.count(); ++e) found.normal[e] = {0, 0, 1}, found.size[e] = 1;
     found.tensor[static_cast<int>(Family::quadric)].assign(above.count(), {0.2, 0, 0, 0.4, 0, 0});
-    fine.keep(4, above, active, found);
+    fine.keep(4, above, active, found, {});
     const Surface& surface = fine.for_rung(4 + FineSurface::rungs_below);
     for (std::size_t j = 0; j < points.size(); ++j) {
         const Vec3 foot = above.foot_of(static_cast<std::size_t>(lowest.parent[j])), d = lowest.foot_of(j) - foot;
