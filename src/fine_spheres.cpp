@@ -35,10 +35,10 @@ FineSurface::FineSurface(const Level& lowest)
     list_members(lowest.count());
 }
 
-void FineSurface::coarsen(const Level& below, const Level& above) {
-    for (std::int32_t& over : over_) over = below.parent[static_cast<std::size_t>(over)];
+void FineSurface::coarsen(const CoarserLevel& above) {
+    for (std::int32_t& over : over_) over = above.parent[static_cast<std::size_t>(over)];
     representative_ = at(representative_, above.representative);
-    list_members(above.count());
+    list_members(above.level.count());
 }
 
 void FineSurface::list_members(std::size_t elements) {

@@ -25,7 +25,7 @@ class FineSurface {
     explicit FineSurface(const Level& lowest);
 
     /// From now on rungs stand on the elements of `above`.
-    void coarsen(const Level& below, const Level& above);
+    void coarsen(const CoarserLevel& above);
     /// Keep what a rung found, in place of what is no longer asked for.
     void keep(int rung, const Level& level, const std::vector<std::uint8_t>& active, const Rung& found,
               const Execution& run);

@@ -129,8 +129,8 @@ std::optional<Estimate> interpolate(const Level& level, const Measured& known, s
     if (order == Order::quadric_or_plane && !curved) fit.plane(value);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
     const Symmetric3 tensor = {value[1], value[2], value[3], value[4], value[5], value[6]};
-    return Estimate{std::max(0.0, value[0]),         known.risk[from],  known.error[from], known.noise[from], turned,
-                    carried(tensor, normal, turned), known.choice[from]};
+    return Estimate{std::max(0.0, value[0]), known.risk[from], known.error[from], known.noise[from], known.spread[from],
+                    turned, carried(tensor, normal, turned), known.choice[from]};
 }
 
 /// The member whose foot is nearest to the mean of all feet.
@@ -166,18 +166,21 @@ double mean_height(const Level& level, std::span<const std::int32_t> members, st
 
 }  // namespace
 
-Level coarsened(Level& level, const Execution& run) {
-    Level above;
-    const std::size_t count = level.count(), groups = (count + Level::group - 1) / Level::group;
+CoarserLevel coarsened(const Level& level, int grouping, const Execution& run) {
+    CoarserLevel coarser;
+    Level& above = coarser.level;
+    const auto shift = static_cast<std::size_t>(grouping);
+    const std::size_t count = level.count(), groups = (count + shift + Level::group - 1) / Level::group;
     above.members = level.members * Level::group;
     above.position.resize(3 * groups);
     above.foot.resize(3 * groups);
     above.normal.resize(groups);
-    above.representative.resize(groups);
+    coarser.representative.resize(groups);
     const std::vector<std::int32_t> order = spatial_order(Points(level.foot), run);
     for_blocks(groups, grain, {run.threads, {}}, [&](std::size_t, std::size_t g, std::size_t last) {
         for (; g < last; ++g) {
-            const std::size_t begin = g * Level::group, end = std::min(count, begin + Level::group);
+            const std::size_t begin = std::max(g * Level::group, shift) - shift,
+                              end = std::min(count, (g + 1) * Level::group - shift);
             const auto members = std::span(order).subspan(begin, end - begin);
             const std::size_t chosen = middle_member(level, members);
             const Vec3 foot = level.foot_of(chosen), normal = level.normal[chosen];
@@ -185,15 +188,16 @@ Level coarsened(Level& level, const Execution& run) {
             store(above.foot.data() + 3 * g, foot);
             store(above.position.data() + 3 * g, height != 0 ? foot + height * normal : foot);
             above.normal[g] = normal;
-            above.representative[g] = static_cast<std::int32_t>(chosen);
+            coarser.representative[g] = static_cast<std::int32_t>(chosen);
         }
     });
     const NeighborIndex feet(Points(above.foot), run);
     build_graph(above, feet, run);
-    level.parent = feet.nearest(Points(level.foot), 1, false, run).index;
+    coarser.parent = feet.nearest(Points(level.foot), 1, false, run).index;
     above.area.assign(groups, 0);
-    for (std::size_t i = 0; i < count; ++i) above.area[static_cast<std::size_t>(level.parent[i])] += level.area[i];
-    return above;
+    for (std::size_t i = 0; i < count; ++i) above.area[static_cast<std::size_t>(coarser.parent[i])] += level.area[i];
+    coarser.measured = nothing_measured(groups);
+    return coarser;
 }
 
 Measured nothing_measured(std::size_t count) {
@@ -202,6 +206,7 @@ Measured nothing_measured(std::size_t count) {
     measured.density.assign(count, nan);
     measured.risk.assign(count, std::numeric_limits<float>::infinity());
     measured.error = measured.noise = measured.risk;
+    measured.spread.assign(count, 0);
     measured.weight.assign(count, 0);
     measured.normal.assign(count, Vec3{nan, nan, nan});
     measured.tensor.resize(count);
@@ -223,10 +228,14 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
         seen_along(measured.tensor[i], measured.normal[i], 1 - part, sum);
         seen_along(estimate.tensor, estimate.normal, part, sum);
         measured.tensor[i] = sum;
-        measured.density[i] += part * (estimate.density - measured.density[i]);
+        const double apart = estimate.density - measured.density[i];
+        measured.density[i] += part * apart;
+        measured.spread[i] = static_cast<float>(part * double(estimate.spread) +
+                                                (1 - part) * (double(measured.spread[i]) + part * apart * apart));
     } else {
         measured.tensor[i] = estimate.tensor;
         measured.density[i] = estimate.density;
+        measured.spread[i] = estimate.spread;
     }
     measured.weight[i] += weight;
     if (!best) return;
@@ -235,16 +244,23 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
     measured.choice[i] = estimate.choice;
 }
 
-void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run) {
+void refine(const std::vector<CoarserLevel>& groupings, const Level& level, Measured& fine, const Execution& run) {
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
-            const auto parent = static_cast<std::size_t>(level.parent[i]);
-            if (!(coarse.weight[parent] > negligible * fine.weight[i])) continue;
-            // At the edge of a region that went on climbing too little is around for good interpolation.
-            const bool better = apart * coarse.risk[parent] < fine.risk[i];
-            const auto found =
-                interpolate(above, coarse, parent, level.foot_of(i), better ? Order::quadric_or_plane : Order::quadric);
-            if (found) mix(*found, coarse.weight[parent], i, fine);
+            double weight = 0;
+            for (const CoarserLevel& above : groupings)
+                weight += above.measured.weight[static_cast<std::size_t>(above.parent[i])] /
+                          static_cast<double>(groupings.size());
+            if (!(weight > negligible * fine.weight[i])) continue;
+            const float so_far = fine.risk[i];
+            for (const CoarserLevel& above : groupings) {
+                const auto parent = static_cast<std::size_t>(above.parent[i]);
+                // At the edge of a region that went on climbing too little is around for good interpolation.
+                const bool better = apart * above.measured.risk[parent] < so_far;
+                const auto found = interpolate(above.level, above.measured, parent, level.foot_of(i),
+                                               better ? Order::quadric_or_plane : Order::quadric);
+                if (found) mix(*found, weight / static_cast<double>(groupings.size()), i, fine);
+            }
         }
     });
 }

@@ -19,9 +19,6 @@ struct Level {
     std::vector<double> foot;      ///< x y z …, where the surface is thought to be under each element
     std::vector<Vec3> normal;      ///< there, unit; not finite where unknown
     ElementGraph graph;
-    std::vector<std::int32_t> parent;  ///< of each element, the nearest of the next level; empty at the top
-    std::vector<std::int32_t>
-        representative;       ///< the element of the level below at whose foot each one is; empty below
     std::vector<float> area;  ///< how many elements of the lowest level have each one above them, parent by parent
     double members = 1;       ///< elements of the lowest level that one stands for
 
@@ -30,10 +27,6 @@ struct Level {
     Vec3 foot_of(std::size_t i) const { return load(foot.data() + 3 * i); }
 };
 
-/// Each group of three along a space-filling curve becomes an element over the foot of its middle member, at the mean
-/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Fills `level.parent`.
-Level coarsened(Level& level, const Execution& run);
-
 /// What was measured at the elements of a level.
 struct Measured {
     std::vector<double> density;
@@ -41,6 +34,7 @@ struct Measured {
         risk;  ///< what the density is chosen by: its squared error, feared; infinite where there is none
     std::vector<float> error;    ///< squared, expected
     std::vector<float> noise;    ///< its part by noise
+    std::vector<float> spread;   ///< weighted variance of what was mixed
     std::vector<double> weight;  ///< what all that was mixed counts
     std::vector<Vec3> normal;
     std::vector<Symmetric3> tensor;
@@ -49,10 +43,23 @@ struct Measured {
 
 Measured nothing_measured(std::size_t count);
 
+/// A level over another one.
+struct CoarserLevel {
+    Level level;
+    std::vector<std::int32_t> representative;  ///< of each element, the one of the level below at whose foot it is
+    std::vector<std::int32_t> parent;          ///< of each element of the level below, the nearest of this one
+    Measured measured;
+};
+
+/// Each group of three along a space-filling curve becomes an element over the foot of its middle member, at the mean
+/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Nothing is measured yet.
+/// \param grouping  0, 1 or 2: elements that the first group has less.
+CoarserLevel coarsened(const Level& level, int grouping, const Execution& run);
+
 /// What a fit makes of an element.
 struct Estimate {
     double density;
-    float risk, error, noise;  ///< as of `Measured`
+    float risk, error, noise, spread;  ///< as of `Measured`
     Vec3 normal;
     Symmetric3 tensor;
     std::uint8_t choice;
@@ -62,8 +69,9 @@ struct Estimate {
 /// noise. A weight of 0 changes nothing.
 void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measured);
 
-/// Mix what the next level above knows into the elements of a level, interpolated between feet.
-void refine(const Level& above, const Measured& coarse, const Level& level, Measured& fine, const Execution& run);
+/// Mix what coarser levels, one for each grouping, know into the elements of a level, interpolated between feet. All of
+/// them count alike: which one promises less is chance.
+void refine(const std::vector<CoarserLevel>& groupings, const Level& level, Measured& fine, const Execution& run);
 
 /// Give elements that know far worse than a neighbour that lends what that one knows, interpolated likewise.
 void borrow(const Level& level, const std::vector<std::uint8_t>& lends, Measured& measured, const Execution& run);

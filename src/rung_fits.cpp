@@ -78,7 +78,7 @@ void RungFits::fit(int rung, std::size_t first, std::size_t last, Rung& found) {
     const std::size_t k = window(rung);
     const bool along_edges = by_rings();
     const std::size_t width = along_edges ? ring_width() : std::min(reach(k), level_.count());
-    const std::size_t stride = spheres_tried() ? 1 : averaged_stride(k), seen = spheres_tried() ? width : k;
+    const std::size_t stride = fine_ ? 1 : averaged_stride(k), seen = fine_ ? width : k;
     std::vector<std::int32_t> rows;
     if (!along_edges) rows = index_.nearest(Points(feet), static_cast<int>(width), false, run_).index;
     for_blocks(who.size(), grain, run_, [&](std::size_t, std::size_t a, std::size_t b) {
@@ -163,13 +163,13 @@ void RungFits::average(int rung, Rung& found) {
     });
     const auto averaged = [&](std::size_t i) { return known(i) && averages_wanted(i); };
     for_lanes(level_.count(), averaged, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
-        average_elements(who, filled, static_cast<int>(count), spheres_tried() ? static_cast<int>(stride) : 1, samples,
+        average_elements(who, filled, static_cast<int>(count), fine_ ? static_cast<int>(stride) : 1, samples,
                          found);
     });
-    if (!spheres_tried()) return;
+    if (!fine_) return;
     keep_spheres(static_cast<int>(k), found);
     if (rung >= FineSurface::rungs_below) keep_fine_spheres(rung, found);
-    fine_.keep(rung, level_, active_, found, run_);
+    fine_->keep(rung, level_, active_, found, run_);
 }
 
 /// Quadrics ask for what the slopes tell of borders.
@@ -249,9 +249,9 @@ void RungFits::keep_spheres(int count, Rung& found) const {
 void RungFits::keep_fine_spheres(int rung, Rung& found) const {
     constexpr auto fine = static_cast<std::size_t>(Family::fine_sphere),
                    extrapolated = static_cast<std::size_t>(Family::extrapolated);
-    const Surface& surface = fine_.for_rung(rung);
+    const Surface& surface = fine_->for_rung(rung);
     const auto known = [&](std::size_t i) {
-        return active_[i] && std::isfinite(found.size[i]) && surface[fine_.representative(i)].weight > 0;
+        return active_[i] && std::isfinite(found.size[i]) && surface[fine_->representative(i)].weight > 0;
     };
     const std::size_t length = std::min(reach(window(rung)), level_.count());
     for_lanes(level_.count(), known, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
@@ -262,7 +262,7 @@ void RungFits::keep_fine_spheres(int rung, Rung& found) const {
             windows.element[l] = i, windows.row[l] = samples_.data() + i * most_samples_;
             windows.half[l] = double(found.half_size[i]), windows.whole[l] = double(found.size[i]);
         }
-        const FineSpheres spheres = fine_spheres(fine_, surface, windows, length, found.normal);
+        const FineSpheres spheres = fine_spheres(*fine_, surface, windows, length, found.normal);
         for (int l = 0; l < filled; ++l) {
             const std::size_t i = who[l];
             found.tensor[fine][i] = spheres.whole[l], found.tensor[extrapolated][i] = spheres.extrapolated[l];

@@ -66,9 +66,9 @@ class RungFits {
   public:
     /// \param active  elements that are fitted.
     /// \param dead    of each family, elements that it has left: averages that no family asks for are not made.
-    /// \param fine    under the level's elements; gets what the rungs find.
+    /// \param fine    under the level's elements, where spheres are tried; gets what the rungs find.
     RungFits(const Elements& elements, Level& level, const std::vector<std::uint8_t>& active, const FamilyFlags& dead,
-             FineSurface& fine, const Execution& run)
+             FineSurface* fine, const Execution& run)
         : elements_(elements),
           level_(level),
           active_(active),
@@ -77,7 +77,7 @@ class RungFits {
           run_{run.threads, {}},
           index_(Points(level.position), run_),
           most_averaged_(elements.connected || level.members == 1 ? few_samples : most_in_window),
-          most_samples_(spheres_tried() ? reach(most_in_window) : most_averaged_),
+          most_samples_(fine ? reach(most_in_window) : most_averaged_),
           samples_(level.count() * most_samples_, -1) {}
 
     /// The finds of a rung, fitted and averaged, at the active elements.
@@ -92,7 +92,6 @@ class RungFits {
     std::size_t averaged_stride(std::size_t window) const { return (window + most_averaged_ - 1) / most_averaged_; }
     /// Elements that members within a window belong to.
     std::size_t reach(std::size_t window) const { return level_.members == 1 ? window : window + window / 4; }
-    bool spheres_tried() const { return families_tried(elements_) > static_cast<int>(Family::sphere); }
     /// Whether windows follow the edges of a mesh.
     bool by_rings() const { return elements_.connected && level_.members == 1; }
     std::size_t ring_width() const;
@@ -115,7 +114,7 @@ class RungFits {
     Level& level_;
     const std::vector<std::uint8_t>& active_;
     const FamilyFlags& dead_;
-    FineSurface& fine_;
+    FineSurface* fine_;
     Execution run_;
     NeighborIndex index_;
     std::vector<std::int32_t> rings_;  ///< on the lowest level of a mesh, `ring_width()` neighbours of each element

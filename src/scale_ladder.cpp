@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "first_look.h"
@@ -107,7 +108,7 @@ struct Standing {
     }
 };
 
-Standing coarsened(const Standing& below, const Level& level, const Level& above) {
+Standing coarsened(const Standing& below, const CoarserLevel& above) {
     Standing standing(at(below.active, above.representative));
     standing.settled = at(below.settled, above.representative);
     standing.noise = at(below.noise, above.representative);
@@ -116,9 +117,9 @@ Standing coarsened(const Standing& below, const Level& level, const Level& above
         standing.least[f] = at(below.least[f], above.representative);
         standing.bias[f] = at(below.bias[f], above.representative);
     }
-    for (std::size_t i = 0; i < level.count(); ++i) {
+    for (std::size_t i = 0; i < below.active.size(); ++i) {
         if (!below.active[i]) continue;
-        const auto parent = static_cast<std::size_t>(level.parent[i]);
+        const auto parent = static_cast<std::size_t>(above.parent[i]);
         standing.active[parent] = 1;
         for (int f = 0; f < families; ++f) standing.dead[f][parent] &= below.dead[f][i];
     }
@@ -309,6 +310,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                                    risk,
                                    error,
                                    static_cast<float>(by_noise),
+                                   0,
                                    lower.normal[i],
                                    lower.tensor[family][i],
                                    rung_choice(rung, static_cast<Family>(family))};
@@ -383,6 +385,52 @@ bool any(const std::vector<std::uint8_t>& flags) {
     return std::find(flags.begin(), flags.end(), 1) != flags.end();
 }
 
+/// What is handed on from level to level.
+struct Climber {
+    Standing standing;
+    std::optional<FineSurface> fine;  ///< where spheres are tried
+    Rung lower;
+    int rung;
+};
+
+/// Elements can be grouped for the next level in several ways, and what is found differs. So those of a cloud are
+/// grouped twice, on the lowest level; of a mesh, whose noise is far below the size of the shape, once.
+int groupings(const Elements& elements, const Level& level) {
+    return level.members == 1 && !elements.connected ? 2 : 1;
+}
+
+/// Climb a level's rungs and the levels above it, and mix what they find into `measured`.
+void climb_level(const Elements& elements, Level& level, Climber climber, Measured& measured, const Execution& run) {
+    {
+        RungFits fits(elements, level, climber.standing.active, climber.standing.dead,
+                      climber.fine ? &*climber.fine : nullptr, run);
+        Ladder ladder(elements, level, climber.standing, measured, run);
+        for (const int here = level_of(climber.rung); climber.rung < most_rungs && level_of(climber.rung) == here;
+             ++climber.rung) {
+            if (rung_neighbors(climber.rung) >= static_cast<int>(elements.count) || !any(climber.standing.active))
+                return;
+            Rung upper = fits.step(climber.rung);
+            if (climber.rung > 0) {
+                ladder.weigh(climber.rung - 1, climber.lower, upper);
+                ladder.let_go();
+            }
+            climber.lower = std::move(upper);
+            if (run.progress && !run.progress((climber.rung + 1.0) / most_rungs)) throw Cancelled();
+        }
+    }
+    if (climber.rung == most_rungs) return;
+    std::vector<CoarserLevel> above;
+    for (int left = groupings(elements, level); left > 0; --left) {
+        CoarserLevel coarser = coarsened(level, left - 1, {run.threads, {}});
+        Climber next = {coarsened(climber.standing, coarser), left > 1 ? climber.fine : std::move(climber.fine),
+                        at(climber.lower, coarser.representative), climber.rung};
+        if (next.fine) next.fine->coarsen(coarser);
+        climb_level(elements, coarser.level, std::move(next), coarser.measured, run);
+        above.push_back(std::move(coarser));
+    }
+    refine(above, level, measured, {run.threads, {}});
+}
+
 }  // namespace
 
 int rung_neighbors(int rung) {
@@ -396,46 +444,17 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
            AutomaticCurvature& result, const Execution& run) {
     // A clean cloud needs no room for rungs.
     if (!any(active)) return;
-    std::vector<Level> levels = {lowest_level(elements, scale, graph)};
-    levels.reserve(static_cast<std::size_t>(level_of(most_rungs)) + 1);
-    std::vector<Measured> measured = {measured_so_far(result)};
-    measured.reserve(levels.capacity());
-    Standing standing(std::move(active));
-    FineSurface fine(levels.front());
-    Rung lower;
-    for (int rung = 0; rung < most_rungs;) {
-        RungFits fits(elements, levels.back(), standing.active, standing.dead, fine, run);
-        Ladder ladder(elements, levels.back(), standing, measured.back(), run);
-        const int level = level_of(rung);
-        bool on = true;
-        for (; rung < most_rungs && level_of(rung) == level; ++rung) {
-            on = rung_neighbors(rung) < static_cast<int>(elements.count) && any(standing.active);
-            if (!on) break;
-            Rung upper = fits.step(rung);
-            if (rung > 0) {
-                ladder.weigh(rung - 1, lower, upper);
-                ladder.let_go();
-            }
-            lower = std::move(upper);
-            if (run.progress && !run.progress((rung + 1.0) / most_rungs)) throw Cancelled();
-        }
-        if (!on || rung == most_rungs) break;
-        levels.push_back(coarsened(levels.back(), {run.threads, {}}));
-        const Level& below = levels[levels.size() - 2];
-        standing = coarsened(standing, below, levels.back());
-        fine.coarsen(below, levels.back());
-        lower = at(lower, levels.back().representative);
-        measured.push_back(nothing_measured(levels.back().count()));
-    }
-    for (std::size_t l = levels.size() - 1; l > 0; --l)
-        refine(levels[l], measured[l], levels[l - 1], measured[l - 1], {run.threads, {}});
-    borrow_on_ladder(levels.front(), measured.front(), run);
-    Measured& lowest = measured.front();
-    add_window_bias(graph, lowest, {run.threads, {}});
+    Level level = lowest_level(elements, scale, graph);
+    Measured measured = measured_so_far(result);
+    Climber climber = {Standing(std::move(active)), {}, Rung(), 0};
+    if (spheres_tried(elements)) climber.fine.emplace(level);
+    climb_level(elements, level, std::move(climber), measured, run);
+    borrow_on_ladder(level, measured, run);
+    add_window_bias(graph, measured, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
-        if (lowest.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(lowest.error[i]);
-    result.density = lowest.density, result.normal = lowest.normal;
-    result.tensor = lowest.tensor, result.choice = lowest.choice;
+        if (measured.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(measured.error[i]);
+    result.density = measured.density, result.normal = measured.normal;
+    result.tensor = measured.tensor, result.choice = measured.choice;
 }
 
 }  // namespace gaussmap

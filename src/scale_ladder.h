@@ -24,8 +24,11 @@ enum class Family : std::uint8_t {
     extrapolated
 };
 constexpr int families = 9;
+inline bool spheres_tried(const Elements& elements) {
+    return !elements.connected;
+}
 inline int families_tried(const Elements& elements) {
-    return elements.connected ? static_cast<int>(Family::sphere) : families;
+    return spheres_tried(elements) ? families : static_cast<int>(Family::sphere);
 }
 
 /// Elements that a rung's fits stand on, from 0 up: threefold in three steps.

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "../../src/frame.h"
 #include "../../src/pyramid.h"
+#include "gaussmap/neighbors.h"
 #include "support.h"
 
 using namespace gaussmap;
@@ -61,30 +63,33 @@ TEST(Pyramid, MixesByWeightAndTellsOfTheBest) {
     Random random(1);
     Measured measured = nothing_measured(1);
     const Vec3 pole = {0, 0, 1};
-    double sum = 0, weights = 0, curvature = 0;
+    double sum = 0, weights = 0, curvature = 0, squares = 0;
     float best = never;
     for (int e = 0; e < 9; ++e) {
         const double k = 1 + 0.1 * random.normal(), weight = e == 4 ? 0 : random.uniform();
         const float risk = e == 4 ? 0 : static_cast<float>(0.1 + random.uniform());
         // Either side of the surface.
         const double side = e % 2 == 0 ? 1 : -1;
-        mix({2 * k * k, risk, 2 * risk, 0.5F * risk, side * pole, across(pole, side * k), static_cast<std::uint8_t>(e)},
+        const auto spread = static_cast<float>(random.uniform());
+        mix({2 * k * k, risk, 2 * risk, 0.5F * risk, spread, side * pole, across(pole, side * k),
+             static_cast<std::uint8_t>(e)},
             weight, 0, measured);
         sum += weight * 2 * k * k, weights += weight, curvature += weight * k;
+        squares += weight * (4 * k * k * k * k + spread);
         if (weight > 0) best = std::min(best, risk);
         EXPECT_NEAR(measured.density[0], sum / weights, 1e-12);
         EXPECT_EQ(measured.risk[0], best) << "an estimate without weight is none";
         EXPECT_EQ(measured.error[0], 2 * best);
         EXPECT_EQ(measured.noise[0], 0.5F * best);
+        EXPECT_NEAR(measured.spread[0], squares / weights - std::pow(sum / weights, 2), 1e-6);
         EXPECT_NEAR(measured.tensor[0].xx * measured.normal[0].z, curvature / weights, 1e-12);
     }
     EXPECT_NEAR(measured.weight[0], weights, 1e-12);
 }
 
 TEST(Pyramid, AreasCountTheElementsThatAreNearest) {
-    Level lowest = sphere_level(600);
-    Level middle = coarsened(lowest, {1, {}});
-    const Level top = coarsened(middle, {1, {}});
+    const Level lowest = sphere_level(600);
+    const Level middle = coarsened(lowest, 0, {1, {}}).level, top = coarsened(middle, 0, {1, {}}).level;
     const auto nearest = [](const Level& level, Vec3 p) {
         std::size_t best = 0;
         for (std::size_t g = 1; g < level.count(); ++g)
@@ -103,24 +108,66 @@ TEST(Pyramid, AreasCountTheElementsThatAreNearest) {
               1.5F * *std::min_element(top.area.begin(), top.area.end()));
 }
 
-TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
-    Level fine = sphere_level(600);
-    const Level coarse = coarsened(fine, {1, {}});
-    ASSERT_EQ(coarse.count(), 200U);
-    Measured above = nothing_measured(coarse.count()), below = nothing_measured(fine.count());
-    for (std::size_t g = 0; g < coarse.count(); ++g)
-        mix({density_at(coarse.foot_of(g)), 0.01F, 0.02F, 0.005F, coarse.normal[g], across(coarse.normal[g], 1), 20}, 3,
-            g, above);
+TEST(Pyramid, GroupingsDifferByWhereGroupsBegin) {
+    const Level lowest = sphere_level(601);
+    const std::vector<std::int32_t> order = spatial_order(Points(lowest.foot), {1, {}});
+    for (int grouping = 0; grouping < Level::group; ++grouping) {
+        const CoarserLevel coarser = coarsened(lowest, grouping, {1, {}});
+        ASSERT_EQ(coarser.representative.size(), 201U);
+        // The middle of each group is one of it.
+        std::size_t at = 0;
+        for (std::size_t g = 0; g < 201; ++g) {
+            const std::size_t size = g == 0 ? 3 - static_cast<std::size_t>(grouping) : std::min<std::size_t>(3, 601 - at);
+            const auto group = std::span(order).subspan(at, size);
+            EXPECT_NE(std::find(group.begin(), group.end(), coarser.representative[g]), group.end()) << g;
+            at += size;
+        }
+        EXPECT_EQ(at, 601U);
+    }
+}
+
+/// What coarser levels found, off by so much, of which risk and weight.
+CoarserLevel found(const Level& fine, int grouping, double off, float risk, double weight) {
+    CoarserLevel coarser = coarsened(fine, grouping, {1, {}});
+    const Level& level = coarser.level;
+    for (std::size_t g = 0; g < level.count(); ++g)
+        mix({density_at(level.foot_of(g)) + off, risk, 2 * risk, 0.5F * risk, 0, level.normal[g],
+             across(level.normal[g], 1), 20},
+            weight, g, coarser.measured);
+    return coarser;
+}
+
+/// On a fine level that is off by 0.4 everywhere, of weight 1.
+Measured refined(const Level& fine, const std::vector<CoarserLevel>& groupings) {
+    Measured below = nothing_measured(fine.count());
     for (std::size_t i = 0; i < fine.count(); ++i)
-        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, 0.05F, fine.normal[i], across(fine.normal[i], 1), 17}, 1, i,
-            below);
-    refine(coarse, above, fine, below, {1, {}});
+        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, 0.05F, 0, fine.normal[i], across(fine.normal[i], 1), 17}, 1,
+            i, below);
+    refine(groupings, fine, below, {1, {}});
+    return below;
+}
+
+TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
+    const Level fine = sphere_level(600);
+    const Measured below = refined(fine, {found(fine, 0, 0, 0.01F, 3)});
     for (std::size_t i = 0; i < fine.count(); ++i) {
         // A quarter of the fine level's error is left, and what interpolation between coarse ones errs.
         EXPECT_NEAR(below.density[i], density_at(fine.foot_of(i)) + 0.1, 0.02) << i;
         EXPECT_EQ(below.choice[i], 20);
         EXPECT_EQ(below.error[i], 0.02F);
         EXPECT_EQ(below.noise[i], 0.005F);
+        EXPECT_NEAR(below.spread[i], 0.03, 0.01);  // 3/4 · 1/4 · 0.4²
+        EXPECT_DOUBLE_EQ(below.weight[i], 4);
+    }
+}
+
+TEST(Pyramid, GroupingsCountAlike) {
+    const Level fine = sphere_level(600);
+    // Whatever they promise: both have the mean weight of 1 and 5.
+    const Measured below = refined(fine, {found(fine, 0, 0.2, 0.01F, 1), found(fine, 1, -0.2, 0.001F, 5)});
+    for (std::size_t i = 0; i < fine.count(); ++i) {
+        EXPECT_NEAR(below.density[i], density_at(fine.foot_of(i)) + 0.1, 0.02) << i;
+        EXPECT_EQ(below.error[i], 0.002F);
         EXPECT_DOUBLE_EQ(below.weight[i], 4);
     }
 }
@@ -129,7 +176,7 @@ TEST(Pyramid, OnlyThoseBorrowWhoDoNotKnowTheSize) {
     const Level level = sphere_level(60);
     Measured measured = nothing_measured(level.count());
     const auto put = [&](std::size_t i, double density, float risk) {
-        mix({density, risk, risk, 0.5F * risk, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
+        mix({density, risk, risk, 0.5F * risk, 0, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
     };
     for (std::size_t i = 0; i < level.count(); ++i) put(i, 2, 0.001F);
     measured.risk[7] = measured.error[7] = 0.1F, measured.density[7] = 2.2;  // worse than all, but good enough

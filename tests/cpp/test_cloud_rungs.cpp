@@ -53,7 +53,7 @@ struct Climb {
           cloud(cloud_of(points.size())),
           dead(nobody(points.size())),
           fine(level),
-          fits(cloud, level, active, dead, fine, {}) {}
+          fits(cloud, level, active, dead, &fine, {}) {}
 };
 
 struct Place {
@@ -159,8 +159,8 @@ TEST(RungFits, AveragesAreNotFoundWhereNoFamilyAsksForThem) {
             dead[static_cast<std::size_t>(family)][i] = 1;
     for (std::size_t i = 0; i < points.size(); i += 4) dead[static_cast<std::size_t>(Family::slope)][i] = 1;
     FineSurface fine_of_all(all), fine_of_some(some);
-    RungFits fits_of_all(cloud, all, active, nobody_dead, fine_of_all, {}),
-        fits_of_some(cloud, some, active, dead, fine_of_some, {});
+    RungFits fits_of_all(cloud, all, active, nobody_dead, &fine_of_all, {}),
+        fits_of_some(cloud, some, active, dead, &fine_of_some, {});
     const Rung whole = fits_of_all.step(1), part = fits_of_some.step(1);
     for (std::size_t i = 0; i < points.size(); ++i) {
         for (const Family family : {Family::half_mean, Family::mean, Family::half_slope, Family::slope}) {
@@ -278,13 +278,14 @@ TEST(FineSurface, FollowsTheElementsOfCoarserLevels) {
     for (std::size_t i = 0; i < points.size(); ++i) lowest.normal[i] = unit(points[i]);
     lowest.graph.index.assign(points.size() * ElementGraph::degree, -1);
     FineSurface fine(lowest);
-    Level above = coarsened(lowest, {});
-    fine.coarsen(lowest, above);
+    const CoarserLevel coarser = coarsened(lowest, 0, {});
+    fine.coarsen(coarser);
+    const Level& above = coarser.level;
     std::vector<int> times(points.size(), 0);
     for (std::size_t e = 0; e < above.count(); ++e) {
-        EXPECT_EQ(fine.representative(e), static_cast<std::size_t>(above.representative[e]));
+        EXPECT_EQ(fine.representative(e), static_cast<std::size_t>(coarser.representative[e]));
         for (const std::int32_t* member = fine.begin(e); member != fine.end(e); ++member) {
-            EXPECT_EQ(lowest.parent[static_cast<std::size_t>(*member)], static_cast<std::int32_t>(e));
+            EXPECT_EQ(coarser.parent[static_cast<std::size_t>(*member)], static_cast<std::int32_t>(e));
             ++times[static_cast<std::size_t>(*member)];
         }
     }
@@ -297,7 +298,7 @@ TEST(FineSurface, FollowsTheElementsOfCoarserLevels) {
     fine.keep(4, above, active, found, {});
     const Surface& surface = fine.for_rung(4 + FineSurface::rungs_below);
     for (std::size_t j = 0; j < points.size(); ++j) {
-        const Vec3 foot = above.foot_of(static_cast<std::size_t>(lowest.parent[j])), d = lowest.foot_of(j) - foot;
+        const Vec3 foot = above.foot_of(static_cast<std::size_t>(coarser.parent[j])), d = lowest.foot_of(j) - foot;
         const Vec3 expected = foot + Vec3{d.x, d.y, -0.1 * d.x * d.x - 0.2 * d.y * d.y};
         EXPECT_NEAR(length(load(surface[j].foot) - expected), 0, 1e-12);
         EXPECT_NEAR(length(load(surface[j].normal) - unit(Vec3{0.2 * d.x, 0.4 * d.y, 1})), 0, 1e-12);
