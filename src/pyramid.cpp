@@ -129,8 +129,15 @@ std::optional<Estimate> interpolate(const Level& level, const Measured& known, s
     if (order == Order::quadric_or_plane && !curved) fit.plane(value);
     const Vec3 turned = gaussmap::unit(Vec3{value[7], value[8], value[9]});
     const Symmetric3 tensor = {value[1], value[2], value[3], value[4], value[5], value[6]};
-    return Estimate{std::max(0.0, value[0]), known.risk[from], known.error[from], known.noise[from], known.spread[from],
-                    turned, carried(tensor, normal, turned), known.choice[from]};
+    return Estimate{std::max(0.0, value[0]),
+                    known.risk[from],
+                    known.error[from],
+                    known.noise[from],
+                    known.disagreement[from],
+                    known.cut[from],
+                    turned,
+                    carried(tensor, normal, turned),
+                    known.choice[from]};
 }
 
 /// The member whose foot is nearest to the mean of all feet.
@@ -206,7 +213,8 @@ Measured nothing_measured(std::size_t count) {
     measured.density.assign(count, nan);
     measured.risk.assign(count, std::numeric_limits<float>::infinity());
     measured.error = measured.noise = measured.risk;
-    measured.spread.assign(count, 0);
+    measured.disagreement.assign(count, 0);
+    measured.cut.assign(count, 1);
     measured.weight.assign(count, 0);
     measured.normal.assign(count, Vec3{nan, nan, nan});
     measured.tensor.resize(count);
@@ -230,16 +238,18 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
         measured.tensor[i] = sum;
         const double apart = estimate.density - measured.density[i];
         measured.density[i] += part * apart;
-        measured.spread[i] = static_cast<float>(part * double(estimate.spread) +
-                                                (1 - part) * (double(measured.spread[i]) + part * apart * apart));
+        measured.disagreement[i] =
+            static_cast<float>(part * double(estimate.disagreement) +
+                               (1 - part) * (double(measured.disagreement[i]) + part * apart * apart));
     } else {
         measured.tensor[i] = estimate.tensor;
         measured.density[i] = estimate.density;
-        measured.spread[i] = estimate.spread;
+        measured.disagreement[i] = estimate.disagreement;
     }
     measured.weight[i] += weight;
     if (!best) return;
     measured.risk[i] = estimate.risk, measured.error[i] = estimate.error, measured.noise[i] = estimate.noise;
+    measured.cut[i] = estimate.cut;
     measured.normal[i] = estimate.normal;
     measured.choice[i] = estimate.choice;
 }

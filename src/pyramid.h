@@ -32,9 +32,10 @@ struct Measured {
     std::vector<double> density;
     std::vector<float>
         risk;  ///< what the density is chosen by: its squared error, feared; infinite where there is none
-    std::vector<float> error;    ///< squared, expected
-    std::vector<float> noise;    ///< its part by noise
-    std::vector<float> spread;   ///< weighted variance of what was mixed
+    std::vector<float> error;         ///< squared, expected
+    std::vector<float> noise;         ///< its part by noise
+    std::vector<float> disagreement;  ///< weighted variance of what was mixed
+    std::vector<float> cut;  ///< variance of the slopes in its window, relative to a disc's: 1, and more beside borders
     std::vector<double> weight;  ///< what all that was mixed counts
     std::vector<Vec3> normal;
     std::vector<Symmetric3> tensor;
@@ -52,14 +53,14 @@ struct CoarserLevel {
 };
 
 /// Each group of three along a space-filling curve becomes an element over the foot of its middle member, at the mean
-/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Nothing is measured yet.
-/// \param grouping  0, 1 or 2: elements that the first group has less.
+/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Nothing is measured
+/// yet. \param grouping  0, 1 or 2: elements that the first group has less.
 CoarserLevel coarsened(const Level& level, int grouping, const Execution& run);
 
 /// What a fit makes of an element.
 struct Estimate {
     double density;
-    float risk, error, noise, spread;  ///< as of `Measured`
+    float risk, error, noise, disagreement, cut;  ///< as of `Measured`
     Vec3 normal;
     Symmetric3 tensor;
     std::uint8_t choice;

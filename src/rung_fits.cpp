@@ -163,8 +163,7 @@ void RungFits::average(int rung, Rung& found) {
     });
     const auto averaged = [&](std::size_t i) { return known(i) && averages_wanted(i); };
     for_lanes(level_.count(), averaged, run_, [&](const std::size_t(&who)[fit_lanes], int filled) {
-        average_elements(who, filled, static_cast<int>(count), fine_ ? static_cast<int>(stride) : 1, samples,
-                         found);
+        average_elements(who, filled, static_cast<int>(count), fine_ ? static_cast<int>(stride) : 1, samples, found);
     });
     if (!fine_) return;
     keep_spheres(static_cast<int>(k), found);

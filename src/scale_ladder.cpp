@@ -18,6 +18,7 @@
 #include "pyramid.h"
 #include "rung_fits.h"
 #include "shape_tensor.h"
+#include "sphere_errors.h"
 #include "window_bias.h"
 
 namespace gaussmap {
@@ -311,6 +312,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                                    error,
                                    static_cast<float>(by_noise),
                                    0,
+                                   lower.spread[1][i],
                                    lower.normal[i],
                                    lower.tensor[family][i],
                                    rung_choice(rung, static_cast<Family>(family))};
@@ -400,7 +402,7 @@ int groupings(const Elements& elements, const Level& level) {
 }
 
 /// Climb a level's rungs and the levels above it, and mix what they find into `measured`.
-void climb_level(const Elements& elements, Level& level, Climber climber, Measured& measured, const Execution& run) {
+void climb_level(const Elements& elements, Level& level, Climber& climber, Measured& measured, const Execution& run) {
     {
         RungFits fits(elements, level, climber.standing.active, climber.standing.dead,
                       climber.fine ? &*climber.fine : nullptr, run);
@@ -425,7 +427,7 @@ void climb_level(const Elements& elements, Level& level, Climber climber, Measur
         Climber next = {coarsened(climber.standing, coarser), left > 1 ? climber.fine : std::move(climber.fine),
                         at(climber.lower, coarser.representative), climber.rung};
         if (next.fine) next.fine->coarsen(coarser);
-        climb_level(elements, coarser.level, std::move(next), coarser.measured, run);
+        climb_level(elements, coarser.level, next, coarser.measured, run);
         above.push_back(std::move(coarser));
     }
     refine(above, level, measured, {run.threads, {}});
@@ -448,9 +450,10 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     Measured measured = measured_so_far(result);
     Climber climber = {Standing(std::move(active)), {}, Rung(), 0};
     if (spheres_tried(elements)) climber.fine.emplace(level);
-    climb_level(elements, level, std::move(climber), measured, run);
+    climb_level(elements, level, climber, measured, run);
     borrow_on_ladder(level, measured, run);
     add_window_bias(graph, measured, {run.threads, {}});
+    tell_sphere_errors(level, climber.standing.noise, measured, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
         if (measured.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(measured.error[i]);
     result.density = measured.density, result.normal = measured.normal;

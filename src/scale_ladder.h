@@ -24,6 +24,9 @@ enum class Family : std::uint8_t {
     extrapolated
 };
 constexpr int families = 9;
+constexpr bool of_spheres(Family family) {
+    return family >= Family::sphere;
+}
 inline bool spheres_tried(const Elements& elements) {
     return !elements.connected;
 }

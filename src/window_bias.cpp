@@ -1,14 +1,12 @@
 // Twicing: a window that made K D of a density D makes K K D of K D, and so takes about as much away once more. Known
 // are K D and, by averages over as much of the surface as the window's second derivatives come from, K K D. Stuetzle
 // and Mittal, "Some comments on the asymptotic behavior of robust smoothers", 1979, corrects by the difference; here it
-// would bring back more noise than it mends, but tells how much is missing where all rungs smooth alike. Level sets of
-// spheres keep more of a density than averages do, by how much the shape decides. So twicing tells too much of them
-// where they are nearly exact, as on a catenoid, and what the next rung changes too much where it hardly errs, as on a
-// torus; a geometric mean of the two is about right on either.
+// would bring back more noise than it mends, but tells how much is missing where all rungs smooth alike.
 #include "window_bias.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "scale_ladder.h"
@@ -21,15 +19,7 @@ namespace {
 /// window 1 − (1 − K)² does, K being half as wide.
 constexpr int of_quadrics = 60, of_quartics = 120;
 /// What is missing, squared, relative to what goes at second sight.
-constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F, missing_of_spheres = 11;
-/// Along a tube the density hardly varies, and twicing tells nothing. So as much of the squared error counts anyway as
-/// it is of this many times the squared density: where windows are as wide as the shape, much.
-constexpr float of_squared_density = 0.25F;
-/// Spheres of several scales are about as good, and their mix errs less than the best of them, which the error told is
-/// of: squared, by this factor.
-constexpr float of_mixed_spheres = 0.7F;
-/// Extrapolated spheres err less than what the changes tell: squared, by this factor.
-constexpr float of_extrapolated = 0.3F;
+constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
 /// Squares are averaged over the surface nearby, as differences pass through zero.
@@ -57,7 +47,7 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
     int last = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const int rung = rung_of(measured.choice[i]);
-        if (rung < 0) continue;
+        if (rung < 0 || of_spheres(family_of(measured.choice[i]))) continue;
         wanted[i] = averages(rung, neighbors(i));
         last = std::max(last, (quartic(i) ? 2 : 1) * wanted[i]);
     }
@@ -68,34 +58,20 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
             if (step == 2 * wanted[i]) twice[i] = smooth[i];
         }
     }
-    const auto of_spheres = [&](std::size_t i) {
-        return family_of(measured.choice[i]) == Family::sphere || family_of(measured.choice[i]) == Family::fine_sphere;
-    };
-    const auto extrapolated = [&](std::size_t i) { return family_of(measured.choice[i]) == Family::extrapolated; };
-    std::vector<float> bias(count, 0);
+    // Of those alone that have one.
+    std::vector<float> bias(count, std::numeric_limits<float>::quiet_NaN());
     for (std::size_t i = 0; i < count; ++i) {
         if (wanted[i] == 0) continue;
-        const float missing = of_spheres(i) ? missing_of_spheres : missing_of_quadrics;
         const auto density = static_cast<float>(measured.density[i]);
         const float part = share(rung_of(measured.choice[i]), neighbors(i));
         bias[i] = quartic(i)
                       ? missing_of_quartics * std::pow(part, 4.0F) * std::pow(density - 2 * once[i] + twice[i], 2.0F)
-                      : missing * std::pow(part * (density - once[i]), 2.0F);
+                      : missing_of_quadrics * std::pow(part * (density - once[i]), 2.0F);
     }
     diffuse(bias, graph, near_reach, run);
     for (std::size_t i = 0; i < count; ++i) {
         if (wanted[i] == 0 || !std::isfinite(bias[i])) continue;
-        const float noise = measured.noise[i], told = std::max(0.0F, measured.error[i] - noise),
-                    more = std::max(0.0F, bias[i] - missing_of_noise * noise);
-        if (!of_spheres(i)) {
-            measured.error[i] = (extrapolated(i) ? of_extrapolated : 1) * (noise + told + more);
-            continue;
-        }
-        // The geometric mean, in which what the next rung changes counts three times.
-        const auto density = static_cast<float>(measured.density[i]);
-        const float anyway = std::min(1.0F, told / (of_squared_density * density * density));
-        const float bias_told = std::max(std::sqrt(told * std::sqrt(told * more)), anyway * told);
-        measured.error[i] = of_mixed_spheres * (noise + bias_told);
+        measured.error[i] += std::max(0.0F, bias[i] - missing_of_noise * measured.noise[i]);
     }
 }
 

@@ -70,18 +70,19 @@ TEST(Pyramid, MixesByWeightAndTellsOfTheBest) {
         const float risk = e == 4 ? 0 : static_cast<float>(0.1 + random.uniform());
         // Either side of the surface.
         const double side = e % 2 == 0 ? 1 : -1;
-        const auto spread = static_cast<float>(random.uniform());
-        mix({2 * k * k, risk, 2 * risk, 0.5F * risk, spread, side * pole, across(pole, side * k),
+        const auto apart = static_cast<float>(random.uniform());
+        mix({2 * k * k, risk, 2 * risk, 0.5F * risk, apart, 1 + risk, side * pole, across(pole, side * k),
              static_cast<std::uint8_t>(e)},
             weight, 0, measured);
         sum += weight * 2 * k * k, weights += weight, curvature += weight * k;
-        squares += weight * (4 * k * k * k * k + spread);
+        squares += weight * (4 * k * k * k * k + apart);
         if (weight > 0) best = std::min(best, risk);
         EXPECT_NEAR(measured.density[0], sum / weights, 1e-12);
         EXPECT_EQ(measured.risk[0], best) << "an estimate without weight is none";
         EXPECT_EQ(measured.error[0], 2 * best);
         EXPECT_EQ(measured.noise[0], 0.5F * best);
-        EXPECT_NEAR(measured.spread[0], squares / weights - std::pow(sum / weights, 2), 1e-6);
+        EXPECT_EQ(measured.cut[0], 1 + best);
+        EXPECT_NEAR(measured.disagreement[0], squares / weights - std::pow(sum / weights, 2), 1e-6);
         EXPECT_NEAR(measured.tensor[0].xx * measured.normal[0].z, curvature / weights, 1e-12);
     }
     EXPECT_NEAR(measured.weight[0], weights, 1e-12);
@@ -117,7 +118,8 @@ TEST(Pyramid, GroupingsDifferByWhereGroupsBegin) {
         // The middle of each group is one of it.
         std::size_t at = 0;
         for (std::size_t g = 0; g < 201; ++g) {
-            const std::size_t size = g == 0 ? 3 - static_cast<std::size_t>(grouping) : std::min<std::size_t>(3, 601 - at);
+            const std::size_t size =
+                g == 0 ? 3 - static_cast<std::size_t>(grouping) : std::min<std::size_t>(3, 601 - at);
             const auto group = std::span(order).subspan(at, size);
             EXPECT_NE(std::find(group.begin(), group.end(), coarser.representative[g]), group.end()) << g;
             at += size;
@@ -131,7 +133,7 @@ CoarserLevel found(const Level& fine, int grouping, double off, float risk, doub
     CoarserLevel coarser = coarsened(fine, grouping, {1, {}});
     const Level& level = coarser.level;
     for (std::size_t g = 0; g < level.count(); ++g)
-        mix({density_at(level.foot_of(g)) + off, risk, 2 * risk, 0.5F * risk, 0, level.normal[g],
+        mix({density_at(level.foot_of(g)) + off, risk, 2 * risk, 0.5F * risk, 0, 1, level.normal[g],
              across(level.normal[g], 1), 20},
             weight, g, coarser.measured);
     return coarser;
@@ -141,8 +143,8 @@ CoarserLevel found(const Level& fine, int grouping, double off, float risk, doub
 Measured refined(const Level& fine, const std::vector<CoarserLevel>& groupings) {
     Measured below = nothing_measured(fine.count());
     for (std::size_t i = 0; i < fine.count(); ++i)
-        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, 0.05F, 0, fine.normal[i], across(fine.normal[i], 1), 17}, 1,
-            i, below);
+        mix({density_at(fine.foot_of(i)) + 0.4, 0.1F, 0.2F, 0.05F, 0, 1, fine.normal[i], across(fine.normal[i], 1), 17},
+            1, i, below);
     refine(groupings, fine, below, {1, {}});
     return below;
 }
@@ -156,7 +158,7 @@ TEST(Pyramid, WhatCoarserLevelsFoundIsMixedIn) {
         EXPECT_EQ(below.choice[i], 20);
         EXPECT_EQ(below.error[i], 0.02F);
         EXPECT_EQ(below.noise[i], 0.005F);
-        EXPECT_NEAR(below.spread[i], 0.03, 0.01);  // 3/4 · 1/4 · 0.4²
+        EXPECT_NEAR(below.disagreement[i], 0.03, 0.01);  // 3/4 · 1/4 · 0.4²
         EXPECT_DOUBLE_EQ(below.weight[i], 4);
     }
 }
@@ -176,7 +178,8 @@ TEST(Pyramid, OnlyThoseBorrowWhoDoNotKnowTheSize) {
     const Level level = sphere_level(60);
     Measured measured = nothing_measured(level.count());
     const auto put = [&](std::size_t i, double density, float risk) {
-        mix({density, risk, risk, 0.5F * risk, 0, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i, measured);
+        mix({density, risk, risk, 0.5F * risk, 0, 1, level.normal[i], across(level.normal[i], 1), 17}, 1 / risk, i,
+            measured);
     };
     for (std::size_t i = 0; i < level.count(); ++i) put(i, 2, 0.001F);
     measured.risk[7] = measured.error[7] = 0.1F, measured.density[7] = 2.2;  // worse than all, but good enough
