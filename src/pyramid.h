@@ -53,8 +53,9 @@ struct CoarserLevel {
 };
 
 /// Each group of three along a space-filling curve becomes an element over the foot of its middle member, at the mean
-/// of its members' heights over their feet: curvature does not lower it, and noise is averaged. Nothing is measured
-/// yet. \param grouping  0, 1 or 2: elements that the first group has less.
+/// of its members' heights over their feet: curvature does not lower it, and noise is averaged.
+/// \param grouping  0, 1 or 2: elements that the first group has less.
+/// \return          of which nothing is measured yet.
 CoarserLevel coarsened(const Level& level, int grouping, const Execution& run);
 
 /// What a fit makes of an element.

@@ -403,12 +403,13 @@ int groupings(const Elements& elements, const Level& level) {
 
 /// Climb a level's rungs and the levels above it, and mix what they find into `measured`.
 void climb_level(const Elements& elements, Level& level, Climber& climber, Measured& measured, const Execution& run) {
+    const int first = climber.rung;
+    const auto done = [&](double rung) { return (rung - first) / (most_rungs - first); };
     {
         RungFits fits(elements, level, climber.standing.active, climber.standing.dead,
                       climber.fine ? &*climber.fine : nullptr, run);
         Ladder ladder(elements, level, climber.standing, measured, run);
-        for (const int here = level_of(climber.rung); climber.rung < most_rungs && level_of(climber.rung) == here;
-             ++climber.rung) {
+        for (; climber.rung < most_rungs && level_of(climber.rung) == level_of(first); ++climber.rung) {
             if (rung_neighbors(climber.rung) >= static_cast<int>(elements.count) || !any(climber.standing.active))
                 return;
             Rung upper = fits.step(climber.rung);
@@ -417,17 +418,21 @@ void climb_level(const Elements& elements, Level& level, Climber& climber, Measu
                 ladder.let_go();
             }
             climber.lower = std::move(upper);
-            if (run.progress && !run.progress((climber.rung + 1.0) / most_rungs)) throw Cancelled();
+            if (run.progress && !run.progress(done(climber.rung + 1))) throw Cancelled();
         }
     }
     if (climber.rung == most_rungs) return;
     std::vector<CoarserLevel> above;
-    for (int left = groupings(elements, level); left > 0; --left) {
-        CoarserLevel coarser = coarsened(level, left - 1, {run.threads, {}});
-        Climber next = {coarsened(climber.standing, coarser), left > 1 ? climber.fine : std::move(climber.fine),
+    const int count = groupings(elements, level);
+    const double begin = done(climber.rung), share = (1 - begin) / count;
+    for (int grouping = 0; grouping < count; ++grouping) {
+        CoarserLevel coarser = coarsened(level, grouping, {run.threads, {}});
+        Climber next = {coarsened(climber.standing, coarser),
+                        grouping + 1 < count ? climber.fine : std::move(climber.fine),
                         at(climber.lower, coarser.representative), climber.rung};
         if (next.fine) next.fine->coarsen(coarser);
-        climb_level(elements, coarser.level, next, coarser.measured, run);
+        climb_level(elements, coarser.level, next, coarser.measured,
+                    part_of(run, begin + grouping * share, begin + (grouping + 1) * share));
         above.push_back(std::move(coarser));
     }
     refine(above, level, measured, {run.threads, {}});
