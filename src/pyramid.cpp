@@ -236,11 +236,11 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
         seen_along(measured.tensor[i], measured.normal[i], 1 - part, sum);
         seen_along(estimate.tensor, estimate.normal, part, sum);
         measured.tensor[i] = sum;
-        const double apart = estimate.density - measured.density[i];
-        measured.density[i] += part * apart;
+        const double change = estimate.density - measured.density[i];
+        measured.density[i] += part * change;
         measured.disagreement[i] =
             static_cast<float>(part * double(estimate.disagreement) +
-                               (1 - part) * (double(measured.disagreement[i]) + part * apart * apart));
+                               (1 - part) * (double(measured.disagreement[i]) + part * change * change));
     } else {
         measured.tensor[i] = estimate.tensor;
         measured.density[i] = estimate.density;
@@ -255,12 +255,13 @@ void mix(const Estimate& estimate, double weight, std::size_t i, Measured& measu
 }
 
 void refine(const std::vector<CoarserLevel>& groupings, const Level& level, Measured& fine, const Execution& run) {
+    const auto count = static_cast<double>(groupings.size());
     for_blocks(level.count(), grain, {run.threads, {}}, [&](std::size_t, std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
-            double weight = 0;
+            double sum = 0;
             for (const CoarserLevel& above : groupings)
-                weight += above.measured.weight[static_cast<std::size_t>(above.parent[i])] /
-                          static_cast<double>(groupings.size());
+                sum += above.measured.weight[static_cast<std::size_t>(above.parent[i])];
+            const double weight = sum / count;
             if (!(weight > negligible * fine.weight[i])) continue;
             const float so_far = fine.risk[i];
             for (const CoarserLevel& above : groupings) {
@@ -269,7 +270,7 @@ void refine(const std::vector<CoarserLevel>& groupings, const Level& level, Meas
                 const bool better = apart * above.measured.risk[parent] < so_far;
                 const auto found = interpolate(above.level, above.measured, parent, level.foot_of(i),
                                                better ? Order::quadric_or_plane : Order::quadric);
-                if (found) mix(*found, weight / static_cast<double>(groupings.size()), i, fine);
+                if (found) mix(*found, weight / count, i, fine);
             }
         }
     });

@@ -137,7 +137,7 @@ struct Changes {
 
 /// Steps of diffusion. Noise of a part of an edge is chosen for by windows that are small for the shape, so that a wide
 /// region is no longer alike.
-constexpr int wide_reach = 60, wide_reach_on_meshes = 20, near_reach = 12, reach_of_variances = 15;
+constexpr int wide_reach = 60, wide_reach_on_meshes = 20, reach_of_variances = 15;
 
 /// One level's part of the climb.
 class Ladder {
@@ -458,7 +458,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     climb_level(elements, level, climber, measured, run);
     borrow_on_ladder(level, measured, run);
     add_window_bias(graph, measured, {run.threads, {}});
-    tell_sphere_errors(level, climber.standing.noise, measured, {run.threads, {}});
+    if (spheres_tried(elements)) tell_sphere_errors(level, climber.standing.noise, measured, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
         if (measured.choice[i] >= first_rung_choice) result.error[i] = std::sqrt(measured.error[i]);
     result.density = measured.density, result.normal = measured.normal;

@@ -38,6 +38,9 @@ inline int families_tried(const Elements& elements) {
 int rung_neighbors(int rung);
 constexpr int most_rungs = 15;
 
+/// Steps of diffusion over the surface near by.
+constexpr int near_reach = 12;
+
 /// The choice that stands for a family on a rung.
 constexpr std::uint8_t first_rung_choice = 16;
 constexpr std::uint8_t rung_choice(int rung, Family family) {

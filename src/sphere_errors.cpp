@@ -1,9 +1,9 @@
 // Three errors. Noise moves a point along the surface, too, and its density is then one of another place: by the noise
 // times the density's gradient, whatever is measured there. What noise is left in a density is less than of the best
 // that was mixed, as several scales of spheres are about as good. And the bias: what the next rung changes tells too
-// much of it on little noise and too little on much, more so beside borders. What the candidates that were mixed
-// disagree about each other tells, too. So of the first a part counts that is as large as the disagreement is for the
-// density, grows with the window, and at borders.
+// much of it on little noise and too little on much, more so beside borders. So the part of it that counts is the
+// larger the more the candidates that were mixed disagree for the density, the wider the window, and the more a border
+// cuts it.
 #include "sphere_errors.h"
 
 #include <algorithm>
@@ -22,8 +22,6 @@ constexpr double of_mixed = 0.6;
 constexpr double bias_part = 0.046, bias_part_extrapolated = 0.15, power_of_neighbors = 0.75;
 /// Borders that cut a window more do not change it more.
 constexpr float most_cut = 4;
-/// Steps of diffusion.
-constexpr int near_reach = 12;
 
 /// Squared gradients of the density along the surface.
 std::vector<float> squared_gradients(const Level& level, const std::vector<double>& density) {

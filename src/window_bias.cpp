@@ -22,8 +22,6 @@ constexpr int of_quadrics = 60, of_quartics = 120;
 constexpr float missing_of_quadrics = 5, missing_of_quartics = 5.4F;
 /// Noise that is left in a density goes at second sight, too, and would pass for this times its variance.
 constexpr float missing_of_noise = 4;
-/// Squares are averaged over the surface nearby, as differences pass through zero.
-constexpr int near_reach = 12;
 
 /// So many at least, which is more than small windows take: the neighbours of an element do not lie evenly about it,
 /// and that is most of what a few averages change. How much more, by the squares of lengths, `share` tells.
@@ -68,6 +66,7 @@ void add_window_bias(const ElementGraph& graph, Measured& measured, const Execut
                       ? missing_of_quartics * std::pow(part, 4.0F) * std::pow(density - 2 * once[i] + twice[i], 2.0F)
                       : missing_of_quadrics * std::pow(part * (density - once[i]), 2.0F);
     }
+    // As differences pass through zero.
     diffuse(bias, graph, near_reach, run);
     for (std::size_t i = 0; i < count; ++i) {
         if (wanted[i] == 0 || !std::isfinite(bias[i])) continue;
