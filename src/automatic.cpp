@@ -273,9 +273,7 @@ void unscale(double scale, AutomaticCurvature& result) {
     for (std::size_t i = 0; i < result.density.size(); ++i) {
         result.density[i] *= scale2;
         result.error[i] *= scale2;
-        Symmetric3 unscaled;
-        add(unscaled, scale, result.tensor[i]);
-        result.tensor[i] = unscaled;
+        result.tensor[i] = scaled(scale, result.tensor[i]);
     }
 }
 

@@ -132,6 +132,7 @@ struct Changes {
     std::array<Field, families> variance;  ///< of the density, by noise
     std::array<Field, families> square;    ///< squared changes relative to those expected of noise, over a wide region
     std::array<Field, families> near;      ///< the same near by
+    std::array<Field, families> drift;     ///< changes of the density, on average near by
     std::array<Field, families> around;    ///< mean of the neighbours' densities
 };
 
@@ -218,12 +219,21 @@ double unbiased(const Rung& on, int family, const Field& noise, std::size_t i) {
            noise[i] * relative_variance(on, family, i) * on.trace[of_quartic(family) ? 1 : 0][i];
 }
 
+/// What a family errs by on a rung: the next one adds `growth` times that, and changes the density near by so on
+/// average. As much of that counts as noise does not make of it, whose variance in a single change is `expected`.
+double signed_bias(double drift, double expected, double growth) {
+    constexpr double left_on_average = 0.5;  // of that variance: windows of neighbours share most of their noise
+    if (!std::isfinite(drift)) return 0;
+    const double square = drift * drift, sum = square + left_on_average * expected;
+    return sum > 0 ? drift / growth * square / sum : 0;
+}
+
 /// All families together, as averages over the surface nearby take less time so.
 Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
     Changes changes;
-    std::vector<Field*> variances, squares, densities;
+    std::vector<Field*> variances, squares, drifts, densities;
     for (int family = 0; family < tried_; ++family) {
         const int q = of_quartic(family) ? 1 : 0;
         Field& variance = changes.variance[family];
@@ -243,13 +253,16 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     diffuse(variances, level_.graph, reach_of_variances, run_);
     for (int family = 0; family < tried_; ++family) {
         const double known = traits[static_cast<std::size_t>(family)].change;
-        changes.square[family].resize(count);
+        changes.square[family].resize(count), changes.drift[family].resize(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const double squared = std::pow(unbiased(upper, family, noise, i) - unbiased(lower, family, noise, i), 2);
-            changes.square[family][i] =
-                static_cast<float>(std::min<double>(squared / (known * changes.variance[family][i]), most_surprising));
+            const double change = unbiased(upper, family, noise, i) - unbiased(lower, family, noise, i);
+            changes.drift[family][i] = static_cast<float>(change);
+            changes.square[family][i] = static_cast<float>(
+                std::min<double>(change * change / (known * changes.variance[family][i]), most_surprising));
         }
+        drifts.push_back(&changes.drift[family]);
     }
+    diffuse(drifts, level_.graph, near_reach, run_);
     diffuse(squares, level_.graph, near_reach, run_);
     changes.near = changes.square;
     diffuse(squares, level_.graph, wide_reach_ - near_reach, run_);
@@ -307,14 +320,16 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                 standing_.dead[family][i] = 1;
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
-        const Estimate estimate = {std::max(0.0, unbiased(lower, family, noise, i)),
+        const double bias = signed_bias(changes.drift[family][i], expected, growth);
+        const double value = std::max(0.0, unbiased(lower, family, noise, i) - bias);
+        const Estimate estimate = {value,
                                    risk,
                                    error,
                                    static_cast<float>(by_noise),
                                    0,
                                    lower.spread[1][i],
                                    lower.normal[i],
-                                   lower.tensor[family][i],
+                                   scaled(density > 0 ? std::sqrt(value / density) : 1, lower.tensor[family][i]),
                                    rung_choice(rung, static_cast<Family>(family))};
         mix(estimate, weight_of(of_quartic(family) && wide ? quartic_share * risk : risk), i, measured_);
     }

@@ -21,6 +21,10 @@ inline void add(Symmetric3& sum, double factor, const Symmetric3& a) {
     sum.yy += factor * a.yy, sum.yz += factor * a.yz, sum.zz += factor * a.zz;
 }
 
+inline Symmetric3 scaled(double factor, const Symmetric3& a) {
+    return {factor * a.xx, factor * a.xy, factor * a.xz, factor * a.yy, factor * a.yz, factor * a.zz};
+}
+
 inline Symmetric3 negated(const Symmetric3& a) {
     return {-a.xx, -a.xy, -a.xz, -a.yy, -a.yz, -a.zz};
 }
