@@ -52,11 +52,11 @@ struct Traits {
     /// Residuals, relative to the noise, of its quadrics or quartics up to which a surface was met alone.
     double fitting;
 };
-constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.6, 2},
-                                                  {0.27, 0.31, 0.38, 0.23, 0.6, 2},
-                                                  {0.09, 0.35, 0.36, 0.22, 0.6, 2},
-                                                  {0.23, 0.30, 0.36, 0.36, 1, 2},
-                                                  {0.10, 0.28, 0.32, 0.32, 1.35, 2},
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.75, 2},
+                                                  {0.27, 0.31, 0.38, 0.23, 0.75, 2},
+                                                  {0.09, 0.35, 0.36, 0.22, 0.75, 2},
+                                                  {0.23, 0.30, 0.36, 0.36, 1.2, 2},
+                                                  {0.10, 0.28, 0.32, 0.32, 1.6, 2},
                                                   {1, 0.50, 0.78, 0.78, 3, 2},
                                                   {0.45, 0.33, 1, 1, 0.31, 2.5},
                                                   {2.5, 0.35, 0.6, 0.6, 0.5, 2.5},
@@ -256,9 +256,10 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
         changes.square[family].resize(count), changes.drift[family].resize(count);
         for (std::size_t i = 0; i < count; ++i) {
             const double change = unbiased(upper, family, noise, i) - unbiased(lower, family, noise, i);
-            changes.drift[family][i] = static_cast<float>(change);
-            changes.square[family][i] = static_cast<float>(
-                std::min<double>(change * change / (known * changes.variance[family][i]), most_surprising));
+            const double expected = known * changes.variance[family][i], most = std::sqrt(most_surprising * expected);
+            changes.drift[family][i] = static_cast<float>(std::clamp(change, -most, most));
+            changes.square[family][i] =
+                static_cast<float>(std::min<double>(change * change / expected, most_surprising));
         }
         drifts.push_back(&changes.drift[family]);
     }
