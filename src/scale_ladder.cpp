@@ -1,9 +1,9 @@
 // Each rung fits 1.44 times as many neighbours as the one below, about the foot that the one below found, since a ball
 // about a noisy point holds more of its own side. Wide windows stand on the elements of a coarser level. The error of a
 // fit is its variance, known from the noise, and its bias, told by what the next rung changes beyond the two fits'
-// noise; both averaged over the surface near the element, without which the choice would follow the noise. Comparable:
-// Lepski's rule, 1990, and the refined residual squares criterion of Fan and Gijbels, 1995, which choose a bandwidth
-// from such changes.
+// noise; both averaged over the surface near the element, without which the choice would follow the noise. Averaged
+// with its sign, that change also tells what to take off the fit. Comparable: Lepski's rule, 1990, and the refined
+// residual squares criterion of Fan and Gijbels, 1995, which choose a bandwidth from such changes.
 #include "scale_ladder.h"
 
 #include <algorithm>
@@ -233,7 +233,7 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
     Changes changes;
-    std::vector<Field*> variances, squares, drifts, densities;
+    std::vector<Field*> variances, squares, near_by, densities;
     for (int family = 0; family < tried_; ++family) {
         const int q = of_quartic(family) ? 1 : 0;
         Field& variance = changes.variance[family];
@@ -261,10 +261,9 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
             changes.square[family][i] =
                 static_cast<float>(std::min<double>(change * change / expected, most_surprising));
         }
-        drifts.push_back(&changes.drift[family]);
+        near_by.push_back(&changes.square[family]), near_by.push_back(&changes.drift[family]);
     }
-    diffuse(drifts, level_.graph, near_reach, run_);
-    diffuse(squares, level_.graph, near_reach, run_);
+    diffuse(near_by, level_.graph, near_reach, run_);
     changes.near = changes.square;
     diffuse(squares, level_.graph, wide_reach_ - near_reach, run_);
     diffuse(densities, level_.graph, 1, run_);

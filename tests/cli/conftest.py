@@ -4,6 +4,7 @@ $GAUSSMAP_DATA, else ../shared/data beside the project."""
 import json
 import os
 import pathlib
+import signal
 import subprocess
 
 import pytest
@@ -13,6 +14,9 @@ PROGRAM = pathlib.Path(os.environ.get("GAUSSMAP", PROJECT / "build/release/gauss
 DATA = pathlib.Path(os.environ.get("GAUSSMAP_DATA") or PROJECT / "../shared/data").resolve()
 # A sanitizer makes the program slower, and its memory no measure.
 SANITIZED = PROGRAM.exists() and any(word in PROGRAM.read_bytes() for word in (b"__asan_init", b"__tsan_init"))
+
+# Ignored in what a script started in the background, and so by the programs that it starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Run:

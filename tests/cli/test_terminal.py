@@ -71,9 +71,7 @@ def test_no_bar_and_no_colour_off_a_terminal(gaussmap, big):
 @pytest.mark.parametrize("number, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 @pytest.mark.parametrize("pause", [0.05, 0.5, 1.2])
 def test_interrupted_promptly_with_nothing_left_behind(program, tmp_path, big, number, code, pause):
-    # A suite that a script started in the background ignores SIGINT, and so would the program until it has begun.
-    process = subprocess.Popen([program, *map(str, big), "-o", "out.ply"], cwd=tmp_path, stderr=subprocess.PIPE,
-                               preexec_fn=lambda: signal.signal(number, signal.SIG_DFL))
+    process = subprocess.Popen([program, *map(str, big), "-o", "out.ply"], cwd=tmp_path, stderr=subprocess.PIPE)
     time.sleep(pause)
     process.send_signal(number)
     begin = time.monotonic()
