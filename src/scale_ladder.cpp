@@ -66,6 +66,10 @@ constexpr bool of_fine_spheres(int family) {
     return family == static_cast<int>(Family::fine_sphere) || family == static_cast<int>(Family::extrapolated);
 }
 
+constexpr bool of_spheres(int family) {
+    return of_spheres(static_cast<Family>(family));
+}
+
 /// Elements of the lowest level lie as they come. That moves level sets of spheres where the surface is none, by a part
 /// of what their shape operator has beside its mean: variance of |S|².
 double uneven_variance(const Symmetric3& shape, int family, int samples) {
@@ -102,10 +106,13 @@ struct Standing {
     FamilyFlags dead;
     std::array<Field, families> least;  ///< squared error of each family's best
     std::array<Field, families> bias;   ///< squared, as far as it is sure on the rungs below
+    std::array<Field, families> below;  ///< bias of the rung below, told by the change from it; of spheres
 
     explicit Standing(std::vector<std::uint8_t> begin)
         : active(std::move(begin)), settled(active.size(), 0), noise(active.size(), nan) {
         dead.fill(settled), least.fill(Field(active.size(), never)), bias.fill(Field(active.size(), 0));
+        for (int f = 0; f < families; ++f)
+            if (of_spheres(f)) below[f].assign(active.size(), nan);
     }
 };
 
@@ -117,6 +124,7 @@ Standing coarsened(const Standing& below, const CoarserLevel& above) {
         standing.dead[f] = at(below.dead[f], above.representative);
         standing.least[f] = at(below.least[f], above.representative);
         standing.bias[f] = at(below.bias[f], above.representative);
+        if (of_spheres(f)) standing.below[f] = at(below.below[f], above.representative);
     }
     for (std::size_t i = 0; i < below.active.size(); ++i) {
         if (!below.active[i]) continue;
@@ -156,9 +164,10 @@ class Ladder {
     void let_go();
 
   private:
-    void estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider);
+    void estimate_noise(int rung, const Rung& lower);
     Changes find_changes(int rung, const Rung& lower, const Rung& upper);
-    void weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes);
+    void weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Changes& changes);
+    bool misfits(int family, float residual, float size, std::size_t i) const;
 
     float least_of_all(std::size_t i) const {
         float least = never;
@@ -171,12 +180,14 @@ class Ladder {
     Standing& standing_;
     Measured& measured_;
     Execution run_;
+    std::array<Field, 2> residual_, wider_;  ///< of the lower and the upper rung, averaged nearby
 };
 
 /// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
 /// borders, where windows are half discs, not on the first rungs. Until then it may grow from rung to rung by as much
 /// as less is cut off, and not by what a shape flattened under a wide window leaves.
-void Ladder::estimate_noise(int rung, const Rung& lower, const Field& residual, const Field& wider) {
+void Ladder::estimate_noise(int rung, const Rung& lower) {
+    const Field &residual = residual_[1], &wider = wider_[1];
     constexpr int first_to_tell = 3;
     constexpr float less_cut_off = 1.15F;
     for (std::size_t i = 0; i < level_.count(); ++i) {
@@ -198,10 +209,14 @@ constexpr float not_feared_near = 1;
 /// more.
 constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
-/// Fine spheres bear a quadric's misfit, as they stand on windows of a third, up to residuals that are this part of the
-/// squared radius: as large they are on a thick torus under little noise, and 0.07 where a window holds all of a tube.
-/// Not on the lowest level, where what misfits is detail that its few points show.
-constexpr float as_wide_as_shape = 0.01F;
+/// Spheres bear the misfit of the quadric that tells where they stand, up to residuals that are this part of the
+/// squared radius: 0.01 they are on a thick torus under little noise, 0.02 where a window holds a wave, and 0.07 where
+/// it holds all of a tube. Not on the lowest level, where what misfits is detail that its few points show; and those
+/// that do not stand on windows of a third only up to this multiple of the noise, as wide windows hold low waves.
+constexpr float as_wide_as_shape = 0.015F, most_borne = 4;
+/// A window that has met the far side tells little of one that has not: of its bias no more than the window below, and
+/// of its squared error this part.
+constexpr float telling_of_misfit = 0.6F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -270,8 +285,16 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     return changes;
 }
 
+/// Are residuals in windows of this size well above the noise? They have met another sheet, the far side, an edge.
+bool Ladder::misfits(int family, float residual, float size, std::size_t i) const {
+    const float size2 = size * size, noise = standing_.noise[i];
+    const bool borne = of_spheres(family) && level_.members > 1 && !(residual - noise > as_wide_as_shape * size2) &&
+                       (of_fine_spheres(family) || residual <= most_borne * noise);
+    return residual > traits[static_cast<std::size_t>(family)].fitting * noise && size2 > 20 * noise && !borne;
+}
+
 /// Mix in a family's values.
-void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& residual, const Changes& changes) {
+void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Changes& changes) {
     const Traits& known = traits[static_cast<std::size_t>(family)];
     const std::size_t count = level_.count();
     const Field& noise = standing_.noise;
@@ -279,14 +302,13 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
                 &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
     const bool wide = level_.members >= members_where_wide;
+    const int q = of_quartic(family) ? 1 : 0;
     for (std::size_t i = 0; i < count; ++i) {
+        const float below = of_spheres(family) ? std::exchange(standing_.below[family][i], nan) : nan;
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
-        // Residuals well above the noise: another sheet, the far side, an edge. So they are on every rung above, once
-        // the windows are wide enough to tell noise; before that a tilted view may be all there is to it.
-        const float size2 = lower.size[i] * lower.size[i];
-        const bool bears_misfit = of_fine_spheres(family) && level_.members > 1;
-        const bool misfit = rung > 0 && residual[i] > known.fitting * noise[i] && size2 > 20 * noise[i] &&
-                            (!bears_misfit || residual[i] - noise[i] > as_wide_as_shape * size2);
+        // What misfits does so on every rung above, once the windows are wide enough to tell noise; before that a
+        // tilted view may be all there is to it.
+        const bool misfit = rung > 0 && misfits(family, residual_[q][i], lower.size[i], i);
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
@@ -299,8 +321,10 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
         };
         const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
         // What is told of the error is only what is not usual of noise.
-        const float error =
-            squared_error(std::max({0.0F, change[i] - usual, near[i] - usual_near}), known.told * growth);
+        const bool next_misfits = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], i);
+        const float error = squared_error(
+            (next_misfits ? telling_of_misfit : 1) * std::max({0.0F, change[i] - usual, near[i] - usual_near}),
+            known.told * growth);
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything. The value is not more than the
         // mean's, which noise raises least: that of slopes near a border may be all noise.
@@ -319,8 +343,12 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
             if (risk > far_above * standing_.least[family][i] || known_bias[i] > far_above * least_of_all(i))
                 standing_.dead[family][i] = 1;
         }
+        double bias = signed_bias(changes.drift[family][i], expected, growth);
+        if (of_spheres(family)) {
+            standing_.below[family][i] = static_cast<float>(bias);
+            if (next_misfits && std::isfinite(below)) bias = 0.5 * (bias + (1 + growth) * below);
+        }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
-        const double bias = signed_bias(changes.drift[family][i], expected, growth);
         const double value = std::max(0.0, unbiased(lower, family, noise, i) - bias);
         const Estimate estimate = {value,
                                    risk,
@@ -336,13 +364,16 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Field& 
 }
 
 void Ladder::weigh(int rung, const Rung& lower, const Rung& upper) {
-    Field residual[2] = {lower.residual[0], lower.residual[1]};
-    Field wider = upper.residual[1];
-    diffuse({&residual[0], &residual[1], &wider}, level_.graph, reach_of_variances, run_);
-    estimate_noise(rung, lower, residual[1], wider);
+    const auto averaged = [&](const Rung& found) {
+        std::array<Field, 2> residual = {found.residual[0], found.residual[1]};
+        diffuse({&residual[0], &residual[1]}, level_.graph, reach_of_variances, run_);
+        return residual;
+    };
+    residual_ = wider_[0].empty() ? averaged(lower) : std::move(wider_);
+    wider_ = averaged(upper);
+    estimate_noise(rung, lower);
     const Changes changes = find_changes(rung, lower, upper);
-    for (int family = 0; family < tried_; ++family)
-        weigh_family(rung, family, lower, residual[of_quartic(family) ? 1 : 0], changes);
+    for (int family = 0; family < tried_; ++family) weigh_family(rung, family, lower, upper, changes);
 }
 
 /// Elements on which every family has had its best leave the ladder, once their neighbours do not need them either.
