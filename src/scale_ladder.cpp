@@ -216,7 +216,7 @@ constexpr double members_where_wide = Level::group * Level::group;
 constexpr float as_wide_as_shape = 0.015F, most_borne = 4;
 /// A window that has met the far side tells little of one that has not: of its bias no more than the window below, and
 /// of its squared error this part.
-constexpr float telling_of_misfit = 0.6F;
+constexpr float telling_of_too_wide = 0.6F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
@@ -285,12 +285,17 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     return changes;
 }
 
+/// Are residuals that large beside the squared radius that the window has met the far side?
+constexpr bool meets_far_side(float residual, float noise, float size) {
+    return residual - noise > as_wide_as_shape * size * size;
+}
+
 /// Are residuals in windows of this size well above the noise? They have met another sheet, the far side, an edge.
 bool Ladder::misfits(int family, float residual, float size, std::size_t i) const {
-    const float size2 = size * size, noise = standing_.noise[i];
-    const bool borne = of_spheres(family) && level_.members > 1 && !(residual - noise > as_wide_as_shape * size2) &&
+    const float noise = standing_.noise[i];
+    const bool borne = of_spheres(family) && level_.members > 1 && !meets_far_side(residual, noise, size) &&
                        (of_fine_spheres(family) || residual <= most_borne * noise);
-    return residual > traits[static_cast<std::size_t>(family)].fitting * noise && size2 > 20 * noise && !borne;
+    return residual > traits[static_cast<std::size_t>(family)].fitting * noise && size * size > 20 * noise && !borne;
 }
 
 /// Mix in a family's values.
@@ -321,9 +326,10 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
         };
         const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
         // What is told of the error is only what is not usual of noise.
-        const bool next_misfits = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], i);
+        const bool next_too_wide = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], i) &&
+                                   meets_far_side(wider_[q][i], noise[i], upper.size[i]);
         const float error = squared_error(
-            (next_misfits ? telling_of_misfit : 1) * std::max({0.0F, change[i] - usual, near[i] - usual_near}),
+            (next_too_wide ? telling_of_too_wide : 1) * std::max({0.0F, change[i] - usual, near[i] - usual_near}),
             known.told * growth);
         if (!(risk < never)) continue;
         // Where noise is as large as the value, its tails are no measure of anything. The value is not more than the
@@ -346,7 +352,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
         double bias = signed_bias(changes.drift[family][i], expected, growth);
         if (of_spheres(family)) {
             standing_.below[family][i] = static_cast<float>(bias);
-            if (next_misfits && std::isfinite(below)) bias = 0.5 * (bias + (1 + growth) * below);
+            if (next_too_wide && std::isfinite(below)) bias = 0.5 * (bias + (1 + growth) * below);
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
         const double value = std::max(0.0, unbiased(lower, family, noise, i) - bias);
