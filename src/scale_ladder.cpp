@@ -51,16 +51,20 @@ struct Traits {
     double told;
     /// Residuals, relative to the noise, of its quadrics or quartics up to which a surface was met alone.
     double fitting;
+    /// What the families of second order smooth away alike, where windows are as wide as the shape, no change between
+    /// their rungs tells. So this part of its risk counts against those of others, in windows of about a thousand
+    /// neighbours and more.
+    double share_where_wide;
 };
-constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.75, 2},
-                                                  {0.27, 0.31, 0.38, 0.23, 0.75, 2},
-                                                  {0.09, 0.35, 0.36, 0.22, 0.75, 2},
-                                                  {0.23, 0.30, 0.36, 0.36, 1.2, 2},
-                                                  {0.10, 0.28, 0.32, 0.32, 1.6, 2},
-                                                  {1, 0.50, 0.78, 0.78, 3, 2},
-                                                  {0.45, 0.33, 1, 1, 0.31, 2.5},
-                                                  {2.5, 0.35, 0.6, 0.6, 0.5, 2.5},
-                                                  {29, 0.36, 1.4, 1.4, 1, 2.5}}};
+constexpr std::array<Traits, families> traits = {{{1, 0.42, 0.38, 0.23, 0.75, 2, 1},
+                                                  {0.27, 0.31, 0.38, 0.23, 0.75, 2, 1},
+                                                  {0.09, 0.35, 0.36, 0.22, 0.75, 2, 1},
+                                                  {0.23, 0.30, 0.36, 0.36, 1.2, 2, 1},
+                                                  {0.10, 0.28, 0.32, 0.32, 1.6, 2, 1},
+                                                  {1, 0.50, 0.78, 0.78, 3, 2, 0.5},
+                                                  {0.45, 0.33, 1, 1, 0.31, 2.5, 1},
+                                                  {2.5, 0.35, 0.6, 0.6, 0.5, 2.5, 0.75},
+                                                  {29, 0.36, 1.4, 1.4, 1, 2.5, 1}}};
 
 constexpr bool of_fine_spheres(int family) {
     return family == static_cast<int>(Family::fine_sphere) || family == static_cast<int>(Family::extrapolated);
@@ -78,8 +82,9 @@ double uneven_variance(const Symmetric3& shape, int family, int samples) {
     return part * 4 * density * std::max(0.0, density - 0.5 * sum * sum) / samples;
 }
 
-constexpr bool of_quartic(int family) {
-    return family == static_cast<int>(Family::quartic);
+/// Which of a rung's two fits tells of a family: the quadric, which all but quartics stand on, or the quartic.
+constexpr std::size_t fit_of(int family) {
+    return family == static_cast<int>(Family::quartic) ? 1 : 0;
 }
 
 /// Variance of a family's value relative to the fit's.
@@ -167,7 +172,7 @@ class Ladder {
     void estimate_noise(int rung, const Rung& lower);
     Changes find_changes(int rung, const Rung& lower, const Rung& upper);
     void weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Changes& changes);
-    bool misfits(int family, float residual, float size, std::size_t i) const;
+    bool misfits(int family, float residual, float size, float density, std::size_t i) const;
 
     float least_of_all(std::size_t i) const {
         float least = never;
@@ -204,16 +209,16 @@ void Ladder::estimate_noise(int rung, const Rung& lower) {
 constexpr float usual = 1.2F, usual_near = 2, sure = 2.5F, sure_near = 4, most_surprising = 50;
 /// A choice had better fear that all of the change over a wide region is bias, and near by what exceeds this.
 constexpr float not_feared_near = 1;
-/// What the families of second order smooth away alike, where windows are as wide as the shape, no change between their
-/// rungs tells. So against them half of the risk of quartics counts, in windows of about a thousand neighbours and
-/// more.
-constexpr float quartic_share = 0.5F;
 constexpr double members_where_wide = Level::group * Level::group;
 /// Spheres bear the misfit of the quadric that tells where they stand, up to residuals that are this part of the
 /// squared radius: 0.01 they are on a thick torus under little noise, 0.02 where a window holds a wave, and 0.07 where
 /// it holds all of a tube. Not on the lowest level, where what misfits is detail that its few points show; and those
 /// that do not stand on windows of a third only up to this multiple of the noise, as wide windows hold low waves.
 constexpr float as_wide_as_shape = 0.015F, most_borne = 4;
+/// Fine spheres stand on windows of a third, and so bear what the bend of the shape leaves in a quadric, until windows
+/// hold all of a tube. Of an arc of curvature κ a quadric leaves a part of κ³h⁴, squared a part of h² (h²ρ)³: 0.002 at
+/// the inner rim of a thick torus, above 0.005 where windows hold waves.
+constexpr float left_by_bend = 0.005F, most_of_bend = 0.06F;
 /// A window that has met the far side tells little of one that has not: of its bias no more than the window below, and
 /// of its squared error this part.
 constexpr float telling_of_too_wide = 0.6F;
@@ -230,8 +235,7 @@ double weight_of(float risk) {
 
 /// The density of a family, less what noise adds to it.
 double unbiased(const Rung& on, int family, const Field& noise, std::size_t i) {
-    return on.density[family][i] -
-           noise[i] * relative_variance(on, family, i) * on.trace[of_quartic(family) ? 1 : 0][i];
+    return on.density[family][i] - noise[i] * relative_variance(on, family, i) * on.trace[fit_of(family)][i];
 }
 
 /// What a family errs by on a rung: the next one adds `growth` times that, and changes the density near by so on
@@ -250,7 +254,7 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     Changes changes;
     std::vector<Field*> variances, squares, near_by, densities;
     for (int family = 0; family < tried_; ++family) {
-        const int q = of_quartic(family) ? 1 : 0;
+        const std::size_t q = fit_of(family);
         Field& variance = changes.variance[family];
         variance.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
@@ -290,11 +294,20 @@ constexpr bool meets_far_side(float residual, float noise, float size) {
     return residual - noise > as_wide_as_shape * size * size;
 }
 
+/// Is all that residuals exceed the noise by due to the bend of a shape of this density?
+constexpr bool is_bend(float residual, float noise, float size, float density) {
+    const float size2 = size * size, bend = size2 * density;
+    return residual - noise <= std::min(most_of_bend, left_by_bend * bend * bend * bend) * size2;
+}
+
 /// Are residuals in windows of this size well above the noise? They have met another sheet, the far side, an edge.
-bool Ladder::misfits(int family, float residual, float size, std::size_t i) const {
+bool Ladder::misfits(int family, float residual, float size, float density, std::size_t i) const {
     const float noise = standing_.noise[i];
-    const bool borne = of_spheres(family) && level_.members > 1 && !meets_far_side(residual, noise, size) &&
-                       (of_fine_spheres(family) || residual <= most_borne * noise);
+    bool borne = false;
+    if (of_spheres(family) && level_.members > 1) {
+        borne = !meets_far_side(residual, noise, size) && (of_fine_spheres(family) || residual <= most_borne * noise);
+        if (family == static_cast<int>(Family::fine_sphere)) borne |= is_bend(residual, noise, size, density);
+    }
     return residual > traits[static_cast<std::size_t>(family)].fitting * noise && size * size > 20 * noise && !borne;
 }
 
@@ -306,14 +319,14 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
     const Field &variance = changes.variance[family], &change = changes.square[family], &near = changes.near[family],
                 &around = changes.around[family];
     Field& known_bias = standing_.bias[family];
-    const bool wide = level_.members >= members_where_wide;
-    const int q = of_quartic(family) ? 1 : 0;
+    const auto share = static_cast<float>(level_.members >= members_where_wide ? known.share_where_wide : 1);
+    const std::size_t q = fit_of(family);
     for (std::size_t i = 0; i < count; ++i) {
         const float below = of_spheres(family) ? std::exchange(standing_.below[family][i], nan) : nan;
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
         // What misfits does so on every rung above, once the windows are wide enough to tell noise; before that a
         // tilted view may be all there is to it.
-        const bool misfit = rung > 0 && misfits(family, residual_[q][i], lower.size[i], i);
+        const bool misfit = rung > 0 && misfits(family, residual_[q][i], lower.size[i], around[i], i);
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
@@ -326,7 +339,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
         };
         const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
         // What is told of the error is only what is not usual of noise.
-        const bool next_too_wide = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], i) &&
+        const bool next_too_wide = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], around[i], i) &&
                                    meets_far_side(wider_[q][i], noise[i], upper.size[i]);
         const float error = squared_error(
             (next_too_wide ? telling_of_too_wide : 1) * std::max({0.0F, change[i] - usual, near[i] - usual_near}),
@@ -365,7 +378,7 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
                                    lower.normal[i],
                                    scaled(density > 0 ? std::sqrt(value / density) : 1, lower.tensor[family][i]),
                                    rung_choice(rung, static_cast<Family>(family))};
-        mix(estimate, weight_of(of_quartic(family) && wide ? quartic_share * risk : risk), i, measured_);
+        mix(estimate, weight_of(share * risk), i, measured_);
     }
 }
 
