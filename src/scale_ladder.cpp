@@ -221,7 +221,7 @@ constexpr float as_wide_as_shape = 0.015F, most_borne = 4;
 constexpr float left_by_bend = 0.005F, most_of_bend = 0.06F;
 /// A window that has met the far side tells little of one that has not: of its bias no more than the window below, and
 /// of its squared error this part.
-constexpr float telling_of_too_wide = 0.6F;
+constexpr float telling_of_too_wide = 0.4F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
 
