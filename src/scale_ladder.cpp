@@ -13,7 +13,9 @@
 #include <optional>
 #include <utility>
 
+#include "far_side.h"
 #include "first_look.h"
+#include "linear_averages.h"
 #include "parallel.h"
 #include "pyramid.h"
 #include "rung_fits.h"
@@ -147,6 +149,7 @@ struct Changes {
     std::array<Field, families> near;      ///< the same near by
     std::array<Field, families> drift;     ///< changes of the density, on average near by
     std::array<Field, families> around;    ///< mean of the neighbours' densities
+    Field saddle;                          ///< k1 k2 / (k1² + k2²) of fine spheres, on average near by
 };
 
 /// Steps of diffusion. Noise of a part of an edge is chosen for by windows that are small for the shape, so that a wide
@@ -162,7 +165,8 @@ class Ladder {
           wide_reach_(elements.connected ? wide_reach_on_meshes : wide_reach),
           standing_(standing),
           measured_(measured),
-          run_{run.threads, {}} {}
+          run_{run.threads, {}},
+          feared_(spheres_tried(elements) ? level.count() : 0, nan) {}
 
     /// Weigh the finds of a rung by what the next one changes.
     void weigh(int rung, const Rung& lower, const Rung& upper);
@@ -172,7 +176,7 @@ class Ladder {
     void estimate_noise(int rung, const Rung& lower);
     Changes find_changes(int rung, const Rung& lower, const Rung& upper);
     void weigh_family(int rung, int family, const Rung& lower, const Rung& upper, const Changes& changes);
-    bool misfits(int family, float residual, float size, float density, std::size_t i) const;
+    bool misfits(int family, float residual, float size, float density, bool hole, std::size_t i) const;
 
     float least_of_all(std::size_t i) const {
         float least = never;
@@ -186,6 +190,7 @@ class Ladder {
     Measured& measured_;
     Execution run_;
     std::array<Field, 2> residual_, wider_;  ///< of the lower and the upper rung, averaged nearby
+    Field feared_;                           ///< `feared` of fine spheres on the rung below
 };
 
 /// Small windows cut the noise off with their ball, and tell too little; from h > 6.5 σ on it is told, at
@@ -210,17 +215,12 @@ constexpr float usual = 1.2F, usual_near = 2, sure = 2.5F, sure_near = 4, most_s
 /// A choice had better fear that all of the change over a wide region is bias, and near by what exceeds this.
 constexpr float not_feared_near = 1;
 constexpr double members_where_wide = Level::group * Level::group;
-/// Spheres bear the misfit of the quadric that tells where they stand, up to residuals that are this part of the
-/// squared radius: 0.01 they are on a thick torus under little noise, 0.02 where a window holds a wave, and 0.07 where
-/// it holds all of a tube. Not on the lowest level, where what misfits is detail that its few points show; and those
-/// that do not stand on windows of a third only up to this multiple of the noise, as wide windows hold low waves.
-constexpr float as_wide_as_shape = 0.015F, most_borne = 4;
-/// Fine spheres stand on windows of a third, and so bear what the bend of the shape leaves in a quadric, until windows
-/// hold all of a tube. Of an arc of curvature κ a quadric leaves a part of κ³h⁴, squared a part of h² (h²ρ)³: 0.002 at
-/// the inner rim of a thick torus, above 0.005 where windows hold waves.
-constexpr float left_by_bend = 0.005F, most_of_bend = 0.06F;
+/// Spheres bear the misfit of the quadric that tells where they stand until the far side is met. Not on the lowest
+/// level, where what misfits is detail that its few points show; and those that do not stand on windows of a third only
+/// up to this multiple of the noise, as wide windows hold low waves.
+constexpr float most_borne = 4;
 /// A window that has met the far side tells little of one that has not: of its bias no more than the window below, and
-/// of its squared error this part.
+/// of its squared error this part. At holes, where fine spheres bear it, nothing: what is feared is what was below.
 constexpr float telling_of_too_wide = 0.4F;
 /// Squared differences from the neighbours' mean relative to the expected squared error beyond which a value is false.
 constexpr double outlying = 9;
@@ -280,6 +280,11 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
             changes.square[family][i] =
                 static_cast<float>(std::min<double>(change * change / expected, most_surprising));
         }
+        if (family == static_cast<int>(Family::fine_sphere)) {
+            changes.saddle.resize(count);
+            for (std::size_t i = 0; i < count; ++i) changes.saddle[i] = saddle(lower.tensor[family][i]);
+            near_by.push_back(&changes.saddle);
+        }
         near_by.push_back(&changes.square[family]), near_by.push_back(&changes.drift[family]);
     }
     diffuse(near_by, level_.graph, near_reach, run_);
@@ -289,24 +294,13 @@ Changes Ladder::find_changes(int rung, const Rung& lower, const Rung& upper) {
     return changes;
 }
 
-/// Are residuals that large beside the squared radius that the window has met the far side?
-constexpr bool meets_far_side(float residual, float noise, float size) {
-    return residual - noise > as_wide_as_shape * size * size;
-}
-
-/// Is all that residuals exceed the noise by due to the bend of a shape of this density?
-constexpr bool is_bend(float residual, float noise, float size, float density) {
-    const float size2 = size * size, bend = size2 * density;
-    return residual - noise <= std::min(most_of_bend, left_by_bend * bend * bend * bend) * size2;
-}
-
 /// Are residuals in windows of this size well above the noise? They have met another sheet, the far side, an edge.
-bool Ladder::misfits(int family, float residual, float size, float density, std::size_t i) const {
+bool Ladder::misfits(int family, float residual, float size, float density, bool hole, std::size_t i) const {
     const float noise = standing_.noise[i];
     bool borne = false;
     if (of_spheres(family) && level_.members > 1) {
         borne = !meets_far_side(residual, noise, size) && (of_fine_spheres(family) || residual <= most_borne * noise);
-        if (family == static_cast<int>(Family::fine_sphere)) borne |= is_bend(residual, noise, size, density);
+        if (family == static_cast<int>(Family::fine_sphere)) borne |= is_bend(residual, noise, size, density, hole);
     }
     return residual > traits[static_cast<std::size_t>(family)].fitting * noise && size * size > 20 * noise && !borne;
 }
@@ -321,12 +315,15 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
     Field& known_bias = standing_.bias[family];
     const auto share = static_cast<float>(level_.members >= members_where_wide ? known.share_where_wide : 1);
     const std::size_t q = fit_of(family);
+    const bool fine = family == static_cast<int>(Family::fine_sphere);
     for (std::size_t i = 0; i < count; ++i) {
+        const float feared_below = fine ? std::exchange(feared_[i], nan) : nan;
         const float below = of_spheres(family) ? std::exchange(standing_.below[family][i], nan) : nan;
         if (!standing_.active[i] || !std::isfinite(lower.density[family][i])) continue;
+        const bool hole = fine && is_hole(changes.saddle[i]);
         // What misfits does so on every rung above, once the windows are wide enough to tell noise; before that a
         // tilted view may be all there is to it.
-        const bool misfit = rung > 0 && misfits(family, residual_[q][i], lower.size[i], around[i], i);
+        const bool misfit = rung > 0 && misfits(family, residual_[q][i], lower.size[i], around[i], hole, i);
         if (misfit && standing_.settled[i]) standing_.dead[family][i] = 1;
         if (misfit || standing_.dead[family][i]) continue;
         // The bias does not fall on the way up, though what the next rung changes does where all is smoothed away.
@@ -337,10 +334,14 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
             const double bias = expected / (growth_of_bias * growth_of_bias) * more;
             return static_cast<float>(by_noise + std::max<double>(bias, known_bias[i]));
         };
-        const float risk = squared_error(std::max(change[i], near[i] - not_feared_near), growth);
-        // What is told of the error is only what is not usual of noise.
-        const bool next_too_wide = of_spheres(family) && misfits(family, wider_[q][i], upper.size[i], around[i], i) &&
+        const bool next_too_wide = of_spheres(family) &&
+                                   misfits(family, wider_[q][i], upper.size[i], around[i], hole, i) &&
                                    meets_far_side(wider_[q][i], noise[i], upper.size[i]);
+        float feared = std::max(change[i], near[i] - not_feared_near);
+        if (fine) feared_[i] = feared;
+        if (hole && next_too_wide && feared_below < feared) feared = feared_below;
+        const float risk = squared_error(feared, growth);
+        // What is told of the error is only what is not usual of noise.
         const float error = squared_error(
             (next_too_wide ? telling_of_too_wide : 1) * std::max({0.0F, change[i] - usual, near[i] - usual_near}),
             known.told * growth);
@@ -365,7 +366,10 @@ void Ladder::weigh_family(int rung, int family, const Rung& lower, const Rung& u
         double bias = signed_bias(changes.drift[family][i], expected, growth);
         if (of_spheres(family)) {
             standing_.below[family][i] = static_cast<float>(bias);
-            if (next_too_wide && std::isfinite(below)) bias = 0.5 * (bias + (1 + growth) * below);
+            if (next_too_wide && hole)
+                bias = 0;
+            else if (next_too_wide && std::isfinite(below))
+                bias = 0.5 * (bias + (1 + growth) * below);
         }
         if (std::pow(density - around[i], 2) > outlying * risk) continue;
         const double value = std::max(0.0, unbiased(lower, family, noise, i) - bias);
@@ -522,6 +526,7 @@ void climb(const Elements& elements, double scale, const ElementGraph& graph, st
     if (spheres_tried(elements)) climber.fine.emplace(level);
     climb_level(elements, level, climber, measured, run);
     borrow_on_ladder(level, measured, run);
+    smooth_densities(level, measured, {run.threads, {}});
     add_window_bias(graph, measured, {run.threads, {}});
     if (spheres_tried(elements)) tell_sphere_errors(level, climber.standing.noise, measured, {run.threads, {}});
     for (std::size_t i = 0; i < elements.count; ++i)
