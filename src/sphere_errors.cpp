@@ -15,11 +15,11 @@
 namespace gaussmap {
 namespace {
 
-/// Variance by noise of what is mixed, relative to that of the best.
-constexpr double of_mixed = 0.5;
+/// Variance by noise of what is mixed, and averaged over a few neighbours, relative to that of the best.
+constexpr double of_mixed = 0.35;
 /// Squared bias relative to what it is found to go with: among others a power of the neighbours in the window, between
 /// their number, as its area goes, and the root, as its radius.
-constexpr double bias_part = 0.04, bias_part_extrapolated = 0.2, power_of_neighbors = 0.75;
+constexpr double bias_part = 0.045, bias_part_extrapolated = 0.3, power_of_neighbors = 0.75;
 /// Borders that cut a window more do not change it more.
 constexpr float most_cut = 4;
 
