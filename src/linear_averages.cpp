@@ -1,8 +1,9 @@
 // Windows of fifty elements and more find densities that vary little within ten, but for the noise of each element's
 // own foot and choice. An average over those alone would take away what is linear, too, as neighbours lie unevenly
-// about an element, most of all beside borders; so it is the value of a linear fit, P D. And P³ takes a part of what
-// bends; 1 − (1 − P³)², twicing, gives that back (Stuetzle and Mittal, "Some comments on the asymptotic behavior of
-// robust smoothers", 1979).
+// about an element, most of all beside borders; so it is the value of a linear fit, P D. Of what bends 1 − (1 − P²)³,
+// twicing done twice, takes away hardly anything (Stuetzle and Mittal, "Some comments on the asymptotic behavior of
+// robust smoothers", 1979). Where noise moves points along the surface by as much as neighbours are apart, a density is
+// one of somewhere about there, and 1 − (1 − P³)² is nearer to it.
 #include "linear_averages.h"
 
 #include <algorithm>
@@ -19,15 +20,17 @@ namespace gaussmap {
 namespace {
 
 constexpr std::size_t grain = 1024;
-constexpr int averages = 3;
 constexpr double same_side = 0.5;  ///< least cosine of normals of one sheet
 constexpr double ridge = 1e-3;     ///< of the mean second moment, for neighbours on a line
+constexpr float left_of_noise = 0.85F;
 
-/// What an element and each of its neighbours count in the average.
-using Weights = std::array<float, ElementGraph::degree + 1>;
+struct Weights {
+    std::array<float, ElementGraph::degree + 1> of = {1};  ///< what the element and each of its neighbours count
+    float apart = 0;                                       ///< variance of the neighbours' places along an axis
+};
 
 Weights weights_of(const Level& level, const Measured& measured, std::size_t i) {
-    Weights weights = {1};
+    Weights weights;
     const Frame frame = frame_about(measured.normal[i]);
     if (!finite(frame.u)) return weights;
     std::array<double, ElementGraph::degree> x, y;
@@ -43,47 +46,55 @@ Weights weights_of(const Level& level, const Measured& measured, std::size_t i) 
         sum += 1, sx += x[j], sy += y[j];
         sxx += x[j] * x[j], sxy += x[j] * y[j], syy += y[j] * y[j];
     }
+    weights.apart = static_cast<float>(0.5 * (sxx + syy) / (sum - 1));
     const double more = ridge * 0.5 * (sxx + syy);
     sxx += more, syy += more;
     const double determinant = sxx * syy - sxy * sxy;
     if (!(determinant > 0)) return weights;
     const double a = (syy * sx - sxy * sy) / determinant, b = (sxx * sy - sxy * sx) / determinant;
     const double all = sum - a * sx - b * sy;  // at least 1, what the element itself counts
-    weights[0] = static_cast<float>(1 / all);
+    weights.of[0] = static_cast<float>(1 / all);
     for (std::size_t j = 0; j < ElementGraph::degree; ++j)
-        if (counts[j]) weights[j + 1] = static_cast<float>((1 - a * x[j] - b * y[j]) / all);
+        if (counts[j]) weights.of[j + 1] = static_cast<float>((1 - a * x[j] - b * y[j]) / all);
     return weights;
 }
 
 }  // namespace
 
-void smooth_densities(const Level& lowest, Measured& measured, const Execution& run) {
+void smooth_densities(const Level& lowest, const std::vector<float>& noise, Measured& measured, const Execution& run) {
     const std::size_t count = lowest.count();
     std::vector<Weights> weights(count);
     for_blocks(count, grain, run, [&](std::size_t, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) weights[i] = weights_of(lowest, measured, i);
     });
-    const auto averaged = [&](const std::vector<double>& field) {
-        std::vector<double> mean(field.size());
+    const auto average = [&](const std::vector<double>& field, std::vector<double>& mean) {
         for_blocks(count, grain, run, [&](std::size_t, std::size_t first, std::size_t last) {
             for (std::size_t i = first; i < last; ++i) {
-                mean[i] = static_cast<double>(weights[i][0]) * field[i];
+                mean[i] = static_cast<double>(weights[i].of[0]) * field[i];
                 for (std::size_t j = 0; j < ElementGraph::degree; ++j)
-                    if (weights[i][j + 1] != 0)
-                        mean[i] += static_cast<double>(weights[i][j + 1]) *
+                    if (weights[i].of[j + 1] != 0)
+                        mean[i] += static_cast<double>(weights[i].of[j + 1]) *
                                    field[static_cast<std::size_t>(lowest.graph[i][j])];
             }
         });
-        return mean;
     };
-    std::vector<double> once = measured.density;
-    for (int time = 0; time < averages; ++time) once = averaged(once);
-    std::vector<double> twice = once;
-    for (int time = 0; time < averages; ++time) twice = averaged(twice);
+    // What P, P², … P⁶ of the densities count: of 1 − (1 − P²)³ and of 1 − (1 − P³)².
+    constexpr double still[] = {0, 3, 0, -3, 0, 1}, moved[] = {0, 0, 2, 0, 0, -1};
+    std::vector<double> field = measured.density, next(count), smooth(count, 0);
+    for (int power = 0; power < 6; ++power) {
+        average(field, next);
+        std::swap(field, next);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double part = noise[i] > 0 ? std::min(1.0F, noise[i] / weights[i].apart) : 0;
+            smooth[i] += ((1 - part) * still[power] + part * moved[power]) * field[i];
+        }
+    }
     for (std::size_t i = 0; i < count; ++i) {
-        const double density = measured.density[i], value = std::max(0.0, 2 * once[i] - twice[i]);
+        const double density = measured.density[i], value = std::max(0.0, smooth[i]);
         if (measured.choice[i] < first_rung_choice || !std::isfinite(density)) continue;
         measured.density[i] = value;
+        measured.error[i] -= (1 - left_of_noise) * measured.noise[i];
+        measured.noise[i] *= left_of_noise;
         measured.tensor[i] = scaled(density > 0 ? std::sqrt(value / density) : 1, measured.tensor[i]);
     }
 }

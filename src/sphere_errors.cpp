@@ -15,8 +15,8 @@
 namespace gaussmap {
 namespace {
 
-/// Variance by noise of what is mixed, and averaged over a few neighbours, relative to that of the best.
-constexpr double of_mixed = 0.35;
+/// Variance by noise of what is mixed, relative to that of the best.
+constexpr double of_mixed = 0.4;
 /// Squared bias relative to what it is found to go with: among others a power of the neighbours in the window, between
 /// their number, as its area goes, and the root, as its radius.
 constexpr double bias_part = 0.045, bias_part_extrapolated = 0.3, power_of_neighbors = 0.75;

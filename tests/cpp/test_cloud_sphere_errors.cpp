@@ -55,20 +55,20 @@ double told(const Told& before, float variance_of_heights) {
 
 TEST(SphereErrors, NoiseMovesPointsAlongTheSurface) {
     for (const Family family : {Family::sphere, Family::fine_sphere, Family::extrapolated}) {
-        EXPECT_NEAR(told({.family = family, .slope = 0.1}, 0.5F), 0.35 * 0.004 + 0.5 * 0.1 * 0.1, 1e-7);
-        EXPECT_NEAR(told({.family = family, .slope = 0.1}, unknown), 0.35 * 0.004, 1e-7) << "as far as it is known";
+        EXPECT_NEAR(told({.family = family, .slope = 0.1}, 0.5F), 0.4 * 0.004 + 0.5 * 0.1 * 0.1, 1e-7);
+        EXPECT_NEAR(told({.family = family, .slope = 0.1}, unknown), 0.4 * 0.004, 1e-7) << "as far as it is known";
     }
 }
 
 TEST(SphereErrors, BiasGoesWithTheWindowAndTheDisagreement) {
     // Windows of 648; 0.006 were told beside the noise.
     const double expected = 0.045 * std::pow(648, 0.75) * 0.006 * std::sqrt(0.09 / (2 * 2 + 0.09));
-    EXPECT_NEAR(told({.disagreement = 0.09F}, 0) - 0.35 * 0.004, expected, 1e-6);
-    EXPECT_NEAR(told({.error = 0.004F + 0.012F, .disagreement = 0.09F}, 0) - 0.35 * 0.004, 2 * expected, 1e-6);
-    EXPECT_NEAR(told({.disagreement = 0}, 0), 0.35 * 0.004, 1e-8);
+    EXPECT_NEAR(told({.disagreement = 0.09F}, 0) - 0.4 * 0.004, expected, 1e-6);
+    EXPECT_NEAR(told({.error = 0.004F + 0.012F, .disagreement = 0.09F}, 0) - 0.4 * 0.004, 2 * expected, 1e-6);
+    EXPECT_NEAR(told({.disagreement = 0}, 0), 0.4 * 0.004, 1e-8);
     const Told extrapolated = {.family = Family::extrapolated, .disagreement = 0.09F};
-    EXPECT_NEAR(told(extrapolated, 0) - 0.35 * 0.004, 0.3 / 0.045 * expected, 1e-6);
-    EXPECT_NEAR(told({.family = Family::fine_sphere, .disagreement = 0.09F}, 0) - 0.35 * 0.004, expected, 1e-6);
+    EXPECT_NEAR(told(extrapolated, 0) - 0.4 * 0.004, 0.3 / 0.045 * expected, 1e-6);
+    EXPECT_NEAR(told({.family = Family::fine_sphere, .disagreement = 0.09F}, 0) - 0.4 * 0.004, expected, 1e-6);
 }
 
 TEST(SphereErrors, BiasIsMoreBesideBorders) {
