@@ -218,7 +218,7 @@ TEST(CloudAuto, NoisyThickTorus) {
         std::uint64_t seed;
         double error;
     };
-    for (const Case& c : {Case{0.01, 3, 0.095}, Case{0.005, 1, 0.059}}) {
+    for (const Case& c : {Case{0.01, 3, 0.0935}, Case{0.005, 1, 0.0575}}) {
         const Cloud torus = noisy(support::torus_cloud(1, 0.7, 0.07, 2), c.noise, c.seed);
         const CloudCurvature result = measure(torus.points);
         expect_sound(result, torus.count());
