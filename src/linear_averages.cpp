@@ -22,6 +22,8 @@ namespace {
 constexpr std::size_t grain = 1024;
 constexpr double same_side = 0.5;  ///< least cosine of normals of one sheet
 constexpr double ridge = 1e-3;     ///< of the mean second moment, for neighbours on a line
+/// Beside an edge, whose densities may be a thousand times larger, averages overshoot.
+constexpr double most_changed = 2;
 constexpr float left_of_noise = 0.85F;
 
 struct Weights {
@@ -90,7 +92,8 @@ void smooth_densities(const Level& lowest, const std::vector<float>& noise, Meas
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const double density = measured.density[i], value = std::max(0.0, smooth[i]);
+        const double density = measured.density[i],
+                     value = std::clamp(smooth[i], density / most_changed, density * most_changed);
         if (measured.choice[i] < first_rung_choice || !std::isfinite(density)) continue;
         measured.density[i] = value;
         measured.error[i] -= (1 - left_of_noise) * measured.noise[i];

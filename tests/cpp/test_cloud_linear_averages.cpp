@@ -125,6 +125,17 @@ TEST(LinearAverages, NeitherOtherSheetsNorUndefinedNeighboursCount) {
     }
 }
 
+TEST(LinearAverages, DoNotOvershootBesideAnEdge) {
+    Square square;
+    for (std::size_t i = 0; i < count; ++i) square.measured.density[i] = i % side < side / 2 ? 0.01 : 100;
+    square.smooth();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double before = i % side < side / 2 ? 0.01 : 100;
+        EXPECT_GE(square.measured.density[i], before / 2) << i;
+        EXPECT_LE(square.measured.density[i], before * 2) << i;
+    }
+}
+
 TEST(LinearAverages, WhoNeverClimbedCountsAndStays) {
     Square square;
     square.measured.density[middle] = 10, square.measured.choice[middle] = 2;
