@@ -28,10 +28,10 @@ constexpr float left_of_noise = 0.85F;
 
 struct Weights {
     std::array<float, ElementGraph::degree + 1> of = {1};  ///< what the element and each of its neighbours count
-    float apart = 0;                                       ///< variance of the neighbours' places along an axis
+    float moved = 0;  ///< noise relative to the variance of the neighbours' places along an axis, up to 1
 };
 
-Weights weights_of(const Level& level, const Measured& measured, std::size_t i) {
+Weights weights_of(const Level& level, const Measured& measured, float noise, std::size_t i) {
     Weights weights;
     const Frame frame = frame_about(measured.normal[i]);
     if (!finite(frame.u)) return weights;
@@ -48,7 +48,7 @@ Weights weights_of(const Level& level, const Measured& measured, std::size_t i) 
         sum += 1, sx += x[j], sy += y[j];
         sxx += x[j] * x[j], sxy += x[j] * y[j], syy += y[j] * y[j];
     }
-    weights.apart = static_cast<float>(0.5 * (sxx + syy) / (sum - 1));
+    if (noise > 0) weights.moved = std::min(1.0F, noise / static_cast<float>(0.5 * (sxx + syy) / (sum - 1)));
     const double more = ridge * 0.5 * (sxx + syy);
     sxx += more, syy += more;
     const double determinant = sxx * syy - sxy * sxy;
@@ -67,7 +67,7 @@ void smooth_densities(const Level& lowest, const std::vector<float>& noise, Meas
     const std::size_t count = lowest.count();
     std::vector<Weights> weights(count);
     for_blocks(count, grain, run, [&](std::size_t, std::size_t first, std::size_t last) {
-        for (std::size_t i = first; i < last; ++i) weights[i] = weights_of(lowest, measured, i);
+        for (std::size_t i = first; i < last; ++i) weights[i] = weights_of(lowest, measured, noise[i], i);
     });
     const auto average = [&](const std::vector<double>& field, std::vector<double>& mean) {
         for_blocks(count, grain, run, [&](std::size_t, std::size_t first, std::size_t last) {
@@ -87,14 +87,14 @@ void smooth_densities(const Level& lowest, const std::vector<float>& noise, Meas
         average(field, next);
         std::swap(field, next);
         for (std::size_t i = 0; i < count; ++i) {
-            const double part = noise[i] > 0 ? std::min(1.0F, noise[i] / weights[i].apart) : 0;
+            const double part = weights[i].moved;
             smooth[i] += ((1 - part) * still[power] + part * moved[power]) * field[i];
         }
     }
     for (std::size_t i = 0; i < count; ++i) {
-        const double density = measured.density[i],
-                     value = std::clamp(smooth[i], density / most_changed, density * most_changed);
+        const double density = measured.density[i];
         if (measured.choice[i] < first_rung_choice || !std::isfinite(density)) continue;
+        const double value = std::clamp(smooth[i], density / most_changed, density * most_changed);
         measured.density[i] = value;
         measured.error[i] -= (1 - left_of_noise) * measured.noise[i];
         measured.noise[i] *= left_of_noise;
